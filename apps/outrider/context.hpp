@@ -1,0 +1,43 @@
+#pragma once
+// What every verb shares: common flags, and where results, progress and interrupts go.
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace outrider::app {
+
+inline constexpr int kDone = 0;         ///< the aim was reached
+inline constexpr int kAimMissed = 1;    ///< the run ended without reaching its aim
+inline constexpr int kBadInput = 2;     ///< bad usage or bad input
+inline constexpr int kInterrupted = 130;
+
+struct Context {
+  std::vector<std::string> argv;
+  bool quiet = false;
+  bool verbose = false;
+  bool json = false;                    ///< the result as one JSON document on stdout, nothing else there
+  std::filesystem::path out;            ///< run folder; empty: the verb's default
+  bool force = false;
+  std::uint64_t seed = 1;
+  int jobs = 1;
+  const std::atomic<bool>* interrupted = nullptr;  ///< set by the first Ctrl-C
+  int exit_code = kDone;                ///< what the verb's callback leaves
+};
+
+/// Adds --json -q -v to a verb.
+void add_output_flags(CLI::App& verb, Context& ctx);
+/// Adds --out --force --seed --jobs to a verb that makes a run folder.
+void add_run_flags(CLI::App& verb, Context& ctx);
+
+// One file a verb. Each adds its subcommand; the callback runs it and sets ctx.exit_code.
+void add_explore(CLI::App& app, Context& ctx);
+void add_replay(CLI::App& app, Context& ctx);
+void add_report(CLI::App& app, Context& ctx);
+void add_map(CLI::App& app, Context& ctx);
+void add_list(CLI::App& app, Context& ctx);
+
+}  // namespace outrider::app
