@@ -183,7 +183,7 @@ std::vector<int> least_cost_assignment(std::span<const double> cost, std::size_t
     std::vector<std::size_t> tree_rows{start};
     while (sink == kFree) {
       double nearest = kInf;
-      std::size_t next = kFree;
+      std::size_t next = 0;
       for (std::size_t j = 0; j < m; ++j) {
         if (scanned[j]) continue;
         const double reduced = reach + at(i, j) - u[i] - v[j];

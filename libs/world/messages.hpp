@@ -24,6 +24,8 @@ struct StatusMessage {
   double radius = 0.0;           ///< [m]
   double explored_rate = 0.0;    ///< A^i(k), Dai 2014 eq. 8 [cells/s]
   bool done = false;             ///< knows of nothing left to explore
+  int priority = 0;              ///< in narrow places: the lower goes first (inherited by who makes room for it)
+  std::optional<RobotId> asks;   ///< the team-mate that is asked to make room
   static constexpr std::size_t kMaxWay = 64;
 };
 

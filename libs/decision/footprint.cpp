@@ -1,0 +1,46 @@
+#include "decision/footprint.hpp"
+
+#include <algorithm>
+
+#include "world/ray.hpp"
+
+namespace outrider::decision {
+
+Footprint::Footprint(double range, double resolution) {
+  constexpr int kFewest = 16, kMost = 48;
+  const int n = std::clamp(static_cast<int>(std::ceil(2.0 * kPi * range / resolution)), kFewest, kMost);
+  const double wedge = 2.0 * kPi / n;
+  const int reach = static_cast<int>(range / resolution) + 2;
+  const GridGeometry local{resolution, {-(reach + 0.5) * resolution, -(reach + 0.5) * resolution}, 2 * reach + 1,
+                           2 * reach + 1};
+  for (int i = 0; i < n; ++i) {
+    std::vector<Step> ray;
+    std::vector<double> entry;
+    const double angle = (i + 0.5) * wedge;
+    walk_ray(local, {0.0, 0.0}, std::cos(angle), std::sin(angle), range, [&](Cell c, double t) {
+      ray.push_back({{c.x - reach, c.y - reach}, 0.0});
+      entry.push_back(t);
+      return true;
+    });
+    entry.push_back(range);
+    for (std::size_t k = 0; k < ray.size(); ++k)
+      ray[k].area = 0.5 * wedge * (entry[k + 1] * entry[k + 1] - entry[k] * entry[k]);
+    rays_.push_back(std::move(ray));
+  }
+}
+
+double Footprint::unseen_area(const OccupancyGrid& map, Cell from) const {
+  double area = 0.0;
+  for (const auto& ray : rays_) {
+    for (const Step& step : ray) {
+      const Cell c{from.x + step.offset.x, from.y + step.offset.y};
+      if (!map.contains(c)) break;
+      const CellState state = map[c];
+      if (state == CellState::kOccupied) break;
+      if (state == CellState::kUnknown) area += step.area;
+    }
+  }
+  return area;
+}
+
+}  // namespace outrider::decision

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "world/grid.hpp"
+
+namespace outrider::decision {
+
+/// How much a sensor of a given range would newly see from a cell: U_p1 of Dai 2014, "the size of the detectable
+/// subset". Rays over the known map; unknown cells let the view through, occupied ones end it.
+class Footprint {
+ public:
+  /// `range` [m] of the sensor, `resolution` [m] of the grid. Precomputes the rays.
+  Footprint(double range, double resolution);
+
+  /// Unknown area within range and in line of sight of `from` [m^2]. O(rays x range / resolution).
+  double unseen_area(const OccupancyGrid& map, Cell from) const;
+
+ private:
+  struct Step {
+    Cell offset;
+    double area;  // share of the disc that this cell of the ray stands for [m^2]
+  };
+  std::vector<std::vector<Step>> rays_;
+};
+
+}  // namespace outrider::decision

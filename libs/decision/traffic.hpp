@@ -1,0 +1,60 @@
+#pragma once
+// Right of way between robots that meet: detour, wait, or make room. Pure functions of what one robot knows.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "decision/distance_field.hpp"
+#include "world/grid.hpp"
+#include "world/robot.hpp"
+
+namespace outrider::decision {
+
+/// A team-mate nearby, as seen or as last heard.
+struct Neighbour {
+  RobotId robot = 0;
+  Point position;                ///< [m]
+  double radius = 0.0;           ///< [m]
+  std::vector<Cell> way;         ///< where it is about to drive, when known
+  int priority = 0;              ///< lower goes first
+  std::optional<RobotId> asks;   ///< whom it asks to make room
+};
+
+/// Shortest paths that keep clear of standing team-mates, and places to make room. Owns its workspace.
+class Traffic {
+ public:
+  Traffic(const GridGeometry& geometry, double radius);
+
+  /// Shortest path (cells, `from` first) from `from` to `to` that touches no neighbour where it stands now.
+  std::optional<std::vector<Cell>> detour(const Grid<std::uint8_t>& passable, Cell from, Cell to,
+                                          std::span<const Neighbour> neighbours);
+
+  struct Room {
+    std::vector<Cell> path;         ///< to a place beside the other's way, own cell first
+    std::optional<RobotId> ask;     ///< who stands in between and has to make room first
+    bool through_asker = false;     ///< only reachable past the asker itself: the asker has to give way
+  };
+  /// The nearest place where `asker` can pass on its way without touching this robot. Tries, in this order: around
+  /// everybody; through others (who are asked in turn); past the asker itself. Nothing when no such place exists.
+  std::optional<Room> make_room(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
+                                std::span<const Neighbour> neighbours);
+
+  /// The neighbour that the way runs into first, within `horizon` [m] of the path's beginning.
+  const Neighbour* in_the_way(std::span<const Cell> way, std::span<const Neighbour> neighbours, double horizon) const;
+
+ private:
+  void block(std::span<const Neighbour> neighbours, std::optional<RobotId> except);
+  std::vector<Cell> nearest_clear(Cell from);
+
+  GridGeometry geometry_;
+  double radius_;
+  Grid<std::uint8_t> mask_;     // passable without the neighbours
+  Grid<std::uint8_t> on_way_;   // 1 = a robot here would be touched by the passing one
+  DistanceField field_;
+};
+
+/// Distance from p to the segment a-b [m].
+double distance_to_segment(Point p, Point a, Point b);
+
+}  // namespace outrider::decision
