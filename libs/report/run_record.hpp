@@ -18,40 +18,41 @@ using Json = nlohmann::ordered_json;
 
 /// One robot's part of a run.
 struct RobotRecord {
-  RobotSpec spec;                          ///< name, abilities, start
-  std::vector<TimedPose> trajectory;       ///< as driven (T_map_robot), time ascending
-  std::optional<OccupancyGrid> map;        ///< its own map at the end
-  Grid<std::uint8_t> seen;                 ///< 1 where this robot's own sensor saw the cell; empty grid = unknown
-  double first_seen_m2 = 0.0;              ///< area that this robot was the first of the team to see [m^2]
+  RobotSpec spec;                     ///< name, abilities, start
+  std::vector<TimedPose> trajectory;  ///< as driven (T_map_robot), time ascending
+  std::optional<OccupancyGrid> map;   ///< its own map at the end
+  Grid<std::uint8_t> seen;            ///< 1 where this robot's own sensor saw the cell; empty grid = unknown
+  double first_seen_m2 = 0.0;         ///< area that this robot was the first of the team to see [m^2]
 };
 
 struct TimelineRow {
   double time_s = 0.0;
-  double explored_fraction = 0.0;          ///< of the reachable area; of the final area when no truth is known
+  double explored_fraction = 0.0;  ///< of the reachable area; of the final area when no truth is known
   double explored_m2 = 0.0;
-  std::vector<double> robot_m2;            ///< first_seen_m2 of each robot so far, team order
+  std::vector<double> robot_m2;  ///< first_seen_m2 of each robot so far, team order
 };
 
 /// At which playback step each cell of the team's map became known.
 inline constexpr std::uint16_t kNeverKnown = std::numeric_limits<std::uint16_t>::max();
 
 struct RunRecord {
-  std::string verb;                        ///< "explore", "replay"
-  std::vector<std::string> command;        ///< argv of the run
+  std::string version;               ///< of the program, e.g. "0.1.0"
+  std::string verb;                  ///< "explore", "replay"
+  std::vector<std::string> command;  ///< argv of the run
   std::uint64_t seed = 1;
-  Json world;                              ///< {"name", "width_m", "height_m", "resolution_m", ...}; null in replay
-  std::string coordinator;                 ///< "" in replay
+  Json world;               ///< {"name", "width_m", "height_m", "resolution_m", ...}; null in replay
+  std::string coordinator;  ///< "" in replay
   std::string comms;
-  Json configuration;                      ///< every resolved setting, for "how to reproduce it"
+  Json configuration;  ///< every resolved setting, for "how to reproduce it"
   std::vector<RobotRecord> robots;
-  OccupancyGrid map;                       ///< the team's map
+  OccupancyGrid map;  ///< the team's map
   std::optional<OccupancyGrid> truth;
   double playback_step_s = 1.0;
-  Grid<std::uint16_t> known_since;         ///< playback step, or kNeverKnown; same geometry as map, or empty
+  Grid<std::uint16_t> known_since;  ///< playback step, or kNeverKnown; same geometry as map, or empty
   std::vector<TimelineRow> timeline;
-  std::vector<Json> events;                ///< {"t": s, "event": "...", ...}, time ascending
-  Json result;                             ///< fields of INTERFACE `result` that the run itself knows
-  Json timing;                             ///< wall-clock figures; the only part that differs between equal runs
+  std::vector<Json> events;  ///< {"t": s, "event": "...", ...}, time ascending
+  Json result;               ///< fields of INTERFACE `result` that the run itself knows
+  Json timing;               ///< wall-clock figures; the only part that differs between equal runs
 };
 
 }  // namespace outrider::report
