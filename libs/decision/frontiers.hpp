@@ -1,0 +1,59 @@
+#pragma once
+// Where the known ends: frontier cells and their clusters, extracted anew from the whole map at every call.
+
+#include <cstdint>
+#include <vector>
+
+#include "world/grid.hpp"
+
+namespace outrider::decision {
+
+/// A frontier cell is a known-free cell with an unknown 8-neighbour (Yamauchi 1997: a legal goal). What lies outside
+/// the map counts as known. Plain definition, also the oracle of the fast extraction.
+bool is_frontier(const OccupancyGrid& map, Cell c);
+
+/// An 8-connected set of frontier cells.
+struct FrontierCluster {
+  std::uint32_t begin = 0, end = 0;  ///< range in Frontiers::cells
+  Point centroid;                    ///< mean of the cell centres [m]
+  Cell medoid;                       ///< member nearest to the centroid, ties by index
+  std::size_t size() const { return end - begin; }
+};
+
+struct Frontiers {
+  std::vector<std::uint32_t> cells;       ///< cell indices, grouped by cluster, ascending inside
+  std::vector<FrontierCluster> clusters;  ///< ordered by smallest cell index
+};
+
+/// Extracts all frontiers of a map; owns its workspace, so that calls after the first do not allocate.
+class FrontierExtractor {
+ public:
+  /// One streaming pass over the map and a union-find over the runs of frontier cells: O(cells + runs). The result
+  /// stays valid until the next call.
+  const Frontiers& extract(const OccupancyGrid& map);
+
+ private:
+  /// Frontier cells [begin, end) of row y, a node of the union-find forest. A parent never has a greater number.
+  struct Run {
+    int y, begin, end;
+    std::uint32_t parent;
+  };
+  struct Sums {
+    std::int64_t x = 0, y = 0;  // of the members' coordinates, exact
+    double best = 0.0;          // squared distance of the medoid so far
+  };
+
+  void detect(const OccupancyGrid& map);
+  void collect_runs(int y, int width);
+  void join(std::size_t above, std::size_t row);
+  std::uint32_t root(std::uint32_t run);
+  void number_clusters();
+  void describe_clusters(const GridGeometry& g);
+
+  std::vector<std::uint8_t> lowest_, flags_;  // one row each
+  std::vector<Run> runs_;
+  std::vector<Sums> sums_;
+  Frontiers result_;
+};
+
+}  // namespace outrider::decision
