@@ -1,0 +1,175 @@
+// `outrider explore`: a simulated team explores a world that it does not know.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <sstream>
+
+#include "context.hpp"
+#include "explorer/mission.hpp"
+#include "mission_record.hpp"
+#include "progress.hpp"
+#include "report/metrics.hpp"
+#include "report/run_folder.hpp"
+#include "specs.hpp"
+#include "team_file.hpp"
+#include "world/error.hpp"
+#include "world_source.hpp"
+
+namespace outrider::app {
+namespace {
+
+using explorer::MissionResult;
+using explorer::MissionSettings;
+using report::Json;
+
+struct Options {
+  std::string world = "office";
+  std::optional<double> resolution;
+  int robots = 0;
+  std::filesystem::path team_file;
+  std::string coordinator = "daa", comms = "ideal", sensing = "disc", localization = "perfect", fault;
+  double until = 1.0, max_time = 0.0, range_noise = 0.0;
+  bool return_home = false, octomap = false;
+  auction::BidParameters bids;
+  std::string turn = "best-bid";
+};
+
+MissionSettings mission_settings(const Options& o, const Context& ctx, const std::vector<RobotSpec>& team) {
+  MissionSettings settings;
+  settings.coordinator = o.coordinator;
+  explorer::make_coordinator(o.coordinator, {});  // an unknown name stops here, before any work
+  settings.coordination.bids = o.bids;
+  settings.coordination.turn = o.turn == "best-bid" ? auction::Turn::kBestBid : auction::Turn::kRobotOrder;
+  settings.coordination.cluster_spacing =
+      std::min_element(team.begin(), team.end(), [](const auto& a, const auto& b) { return a.range < b.range; })->range;
+  settings.explorer.return_home = o.return_home;
+  settings.sim.lidar = o.sensing == "lidar";
+  settings.sim.range_noise = o.range_noise;
+  settings.sim.seed = ctx.seed;
+  settings.until = o.until;
+  settings.max_time_s = o.max_time;
+  settings.faults = parse_faults(o.fault, team);
+  settings.link = parse_comms(o.comms);
+  return settings;
+}
+
+Json configuration(const Options& o, const MissionSettings& s) {
+  return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms}, {"sensing", o.sensing},
+          {"localization", o.localization}, {"until", o.until}, {"max_time_s", o.max_time},
+          {"return_home", o.return_home}, {"fault", o.fault}, {"step_s", s.sim.dt}, {"range_noise_m", o.range_noise},
+          {"scan_rate_hz", s.sim.scan_rate}, {"rho", o.bids.rho}, {"gamma", o.bids.gamma},
+          {"influence_weight", o.bids.weight}, {"alpha", o.bids.alpha}, {"turn", o.turn}};
+}
+
+Json timing(double wall_s, MissionResult& result) {
+  auto& ms = result.decision_ms;
+  std::sort(ms.begin(), ms.end());
+  const auto quantile = [&](double q) {
+    return ms.empty() ? 0.0 : ms[static_cast<std::size_t>(q * static_cast<double>(ms.size() - 1))];
+  };
+  return {{"wall_s", wall_s},
+          {"decision_ms", {{"p50", quantile(0.5)}, {"p95", quantile(0.95)}, {"max", quantile(1.0)}}},
+          {"realtime_factor", wall_s > 0.0 ? result.mission_time_s / wall_s : 0.0}};
+}
+
+Json world_json(const sim::World& world) {
+  const auto& g = world.map.geometry();
+  return {{"name", world.name}, {"width_m", g.width * g.resolution}, {"height_m", g.height * g.resolution},
+          {"resolution_m", g.resolution}, {"provenance", world.provenance}};
+}
+
+int exit_code(const Json& result) {
+  const std::string status = result["status"];
+  return status == "explored" ? kDone : status == "interrupted" ? kInterrupted : kAimMissed;
+}
+
+void print_summary(const report::RunRecord& record, const Json& result, const Context& ctx) {
+  const std::string status = result["status"];
+  fmt::print("{}: {:.1f} % of {:.1f} m² in {:.1f} s with {} robot{}, {}; {:.1f} m driven, {} messages", status,
+             100.0 * result["explored_fraction"].get<double>(), result["reachable_m2"].get<double>(),
+             result["time_s"].get<double>(), record.robots.size(), record.robots.size() == 1 ? "" : "s",
+             record.coordinator, [&] {
+               double sum = 0.0;
+               for (const auto& [name, metres] : result["path_m"].items()) sum += metres.get<double>();
+               return sum;
+             }(), result["messages"]["sent"].get<std::uint64_t>());
+  fmt::print("{}\n", ctx.out.empty() ? std::string() : fmt::format("; report: {}", (ctx.out / "report.html").string()));
+}
+
+void explore(const Options& o, Context& ctx) {
+  if (!ctx.out.empty()) report::check_out_dir(ctx.out, ctx.force);
+  const sim::World world = open_world(o.world, o.resolution);
+  const std::vector<RobotSpec> team =
+      place_team(world, o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file));
+  const MissionSettings settings = mission_settings(o, ctx, team);
+  const auto begin = std::chrono::steady_clock::now();
+  MissionResult result;
+  {
+    Progress progress("exploring", ctx.quiet);
+    result = explorer::run_mission(world.map, team, settings, [&](double now_s, double fraction) {
+      progress.update(fraction, fmt::format("{:.0f} s simulated", now_s));
+      return !ctx.interrupted->load();
+    });
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  Json times = timing(wall.count(), result);
+  report::RunRecord record = mission_record(std::move(result), settings, world.map);
+  record.version = OUTRIDER_VERSION;
+  record.command = ctx.argv;
+  record.seed = ctx.seed;
+  record.world = world_json(world);
+  record.comms = o.comms;
+  record.configuration = configuration(o, settings);
+  record.timing = std::move(times);
+  if (!ctx.out.empty())
+    report::write_run_folder(record, ctx.out, {ctx.force},
+                             [&](const auto& folder) { write_maps(record, folder, o.octomap); });
+  const Json document = report::run_json(record);
+  if (ctx.json) fmt::print("{}\n", document.dump(2));
+  else if (!ctx.quiet) print_summary(record, document["result"], ctx);
+  ctx.exit_code = exit_code(document["result"]);
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app, Context& ctx) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("explore", "a simulated team explores an unknown world");
+  verb->add_option("WORLD", o->world, "name from 'outrider list worlds', or a map: ROS .yaml, image, .gridmap[.gz], "
+                   "MovingAI .map, ASCII .txt")->capture_default_str();
+  verb->add_option("--resolution", o->resolution, "edge of a cell for images, .map and .txt [m]")
+      ->check(CLI::PositiveNumber)->type_name("M");
+  auto* robots = verb->add_option("--robots", o->robots, "size of the team (default: the world's usual team)")
+                     ->check(CLI::Range(1, 1000))->type_name("N");
+  verb->add_option("--team", o->team_file, "team file (YAML)")->type_name("FILE")->excludes(robots);
+  verb->add_option("--coordinator", o->coordinator, "who goes where; see 'outrider list coordinators'")
+      ->capture_default_str()->type_name("NAME");
+  verb->add_option("--comms", o->comms, "radio: ideal, none")->capture_default_str()->type_name("SPEC");
+  verb->add_option("--sensing", o->sensing, "disc: every cell in range and sight; lidar: simulated scans")
+      ->check(CLI::IsMember({"disc", "lidar"}))->capture_default_str()->type_name("KIND");
+  verb->add_option("--localization", o->localization, "perfect (odometry and slam are to come)")
+      ->check(CLI::IsMember({"perfect"}))->capture_default_str()->type_name("KIND");
+  verb->add_option("--range-noise", o->range_noise, "standard deviation of a lidar range [m]")
+      ->check(CLI::Range(0.0, 10.0))->capture_default_str()->type_name("M");
+  verb->add_option("--until", o->until, "stop when this fraction of the reachable area has been seen")
+      ->check(CLI::Range(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
+  verb->add_option("--max-time", o->max_time, "stop after this much simulated time [s] (default: a generous limit)")
+      ->check(CLI::PositiveNumber)->type_name("S");
+  verb->add_flag("--return-home", o->return_home, "drive back to the starts in the end");
+  verb->add_option("--fault", o->fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR; comma-separated")
+      ->type_name("SPEC");
+  verb->add_flag("--octomap", o->octomap, "also write map.bt (OctoMap)");
+  verb->add_option("--rho", o->bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")->capture_default_str();
+  verb->add_option("--gamma", o->bids.gamma, "ia, ea, daa: influence of robots without target (eq. 2)")
+      ->capture_default_str();
+  verb->add_option("--influence-weight", o->bids.weight, "ia, ea, daa: of U_p2 as a whole [m^2]")->capture_default_str();
+  verb->add_option("--alpha", o->bids.alpha, "daa: expected utility per explored rate [s] (eq. 10)")
+      ->capture_default_str();
+  verb->add_option("--turn", o->turn, "ia, ea, daa, ta: whose bid is served next")
+      ->check(CLI::IsMember({"best-bid", "robot-order"}))->capture_default_str();
+  add_run_flags(*verb, ctx);
+  verb->callback([o, &ctx] { explore(*o, ctx); });
+}
+
+}  // namespace outrider::app

@@ -1,0 +1,144 @@
+#include "mission_record.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "slam_glue/map_files.hpp"
+
+namespace outrider::app {
+namespace {
+
+using report::Json;
+
+double milli(double v) { return std::round(v * 1e3) / 1e3; }
+
+/// Turns mission events into lines of events.jsonl. Cells become metres in the map frame.
+class EventWriter {
+ public:
+  EventWriter(const GridGeometry& geometry, const std::vector<report::RobotRecord>& robots)
+      : geometry_(geometry), robots_(robots) {}
+
+  Json operator()(double t, const explorer::Event& event) const {
+    Json line{{"t", milli(t)}};
+    std::visit([&](const auto& e) { write(line, e); }, event);
+    return line;
+  }
+
+ private:
+  const std::string& name(RobotId robot) const { return robots_[static_cast<std::size_t>(robot)].spec.name; }
+  Json at(Cell c) const {
+    const Point p = geometry_.center(c);
+    return {milli(p.x), milli(p.y)};
+  }
+  Json names(const std::vector<RobotId>& robots) const {
+    Json list = Json::array();
+    for (const RobotId robot : robots) list.push_back(name(robot));
+    return list;
+  }
+
+  void write(Json& line, const explorer::GoalEvent& e) const {
+    line["event"] = "goal";
+    line["robot"] = name(e.robot);
+    line["task"] = at(e.task.cell);
+    line["stand"] = at(e.task.stand);
+    line["distance_m"] = milli(e.distance_m);
+    line["value"] = milli(e.value);
+  }
+  void write(Json& line, const explorer::TaskEndEvent& e) const {
+    line["event"] = "task_end";
+    line["robot"] = name(e.robot);
+    line["task"] = at(e.task);
+    line["how"] = e.how;
+  }
+  void write(Json& line, const explorer::PhaseEvent& e) const {
+    line["event"] = "phase";
+    line["robot"] = name(e.robot);
+    line["phase"] = e.phase;
+  }
+  void write(Json& line, const explorer::FaultEvent& e) const {
+    line["event"] = "fault";
+    line["robot"] = name(e.robot);
+    line["fault"] = e.what;
+  }
+  void write(Json& line, const explorer::AuctionRecord& e) const {
+    line["event"] = "auction";
+    line["opener"] = name(e.round.opener);
+    line["round"] = e.round.count;
+    Json bids = Json::array();
+    for (const BidSheet& sheet : e.sheets) {
+      Json tasks = Json::array();  // [x, y, gain_m2, distance_m] each
+      for (const BidEntry& entry : sheet.entries) {
+        const Point p = geometry_.center(entry.task);
+        tasks.push_back({milli(p.x), milli(p.y), milli(entry.gain), milli(entry.distance)});
+      }
+      bids.push_back({{"robot", name(sheet.robot)}, {"busy", sheet.busy},
+                      {"explored_rate_m2_s", milli(sheet.explored_rate)}, {"tasks", std::move(tasks)}});
+    }
+    line["bids"] = std::move(bids);
+    Json awards = Json::array();
+    for (const Award& award : e.awards)
+      awards.push_back({{"robot", name(award.robot)}, {"task", at(award.task)}, {"value", milli(award.value)}});
+    line["awards"] = std::move(awards);
+    line["unheard"] = names(e.unheard);
+  }
+
+  const GridGeometry& geometry_;
+  const std::vector<report::RobotRecord>& robots_;
+};
+
+Json result_json(const explorer::MissionResult& r) {
+  Json time_to = Json::object();
+  for (const auto& [fraction, time] : r.time_to)
+    time_to[fmt::format("{}", fraction)] = time ? Json(milli(*time)) : Json();
+  Json left = Json::array();
+  for (const explorer::Left& l : r.left)
+    left.push_back({{"frontier", {milli(l.frontier.x), milli(l.frontier.y)}}, {"m2", milli(l.unknown_m2)},
+                    {"why", explorer::to_string(l.why)}});
+  return {{"status", explorer::to_string(r.status)},
+          {"explored_fraction", r.explored_fraction},
+          {"reachable_m2", milli(r.reachable_m2)},
+          {"time_s", milli(r.time_s)},
+          {"time_to", time_to},
+          {"mission_time_s", milli(r.mission_time_s)},
+          {"interactions", {{"count", r.interactions}, {"time_s", milli(r.interaction_s)}}},
+          {"messages", {{"sent", r.radio.sent}, {"delivered", r.radio.delivered}, {"bytes", r.radio.bytes}}},
+          {"maps_equal", r.maps_equal},
+          {"left", left}};
+}
+
+}  // namespace
+
+report::RunRecord mission_record(explorer::MissionResult&& result, const explorer::MissionSettings& settings,
+                                 const OccupancyGrid& truth) {
+  report::RunRecord record;
+  record.verb = "explore";
+  record.coordinator = settings.coordinator;
+  record.result = result_json(result);
+  for (explorer::MissionRobot& robot : result.robots)
+    record.robots.push_back({robot.spec, std::move(robot.trajectory), std::move(robot.map), std::move(robot.seen),
+                             robot.first_seen_m2});
+  const EventWriter to_json(truth.geometry(), record.robots);
+  for (const auto& [t, event] : result.events) record.events.push_back(to_json(t, event));
+  for (explorer::TimelinePoint& row : result.timeline)
+    record.timeline.push_back({row.time_s, row.explored_fraction, row.explored_m2, std::move(row.robot_m2)});
+  record.map = std::move(result.map);
+  record.truth = truth;
+  record.known_since = std::move(result.known_since);
+  record.playback_step_s = result.playback_step_s;
+  return record;
+}
+
+void write_maps(const report::RunRecord& record, const std::filesystem::path& folder, bool octomap) {
+  const auto write = [](const OccupancyGrid& map, const std::filesystem::path& directory) {
+    std::filesystem::create_directories(directory);
+    slam_glue::save_ros_map(map, directory / "map.yaml");
+  };
+  write(record.map, folder);
+  slam_glue::save_gridmap(record.map, folder / "map.gridmap");
+  if (octomap) slam_glue::save_octomap(record.map, folder / "map.bt", 0.0);
+  for (const report::RobotRecord& robot : record.robots)
+    if (robot.map) write(*robot.map, folder / "robots" / robot.spec.name);
+}
+
+}  // namespace outrider::app

@@ -1,0 +1,234 @@
+#include "explorer/explorer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace outrider::explorer {
+namespace {
+
+constexpr double kLookAround = 0.3;    // [s] at the stand before a task counts as not observable
+constexpr double kAskAgain = 2.0;      // [s] between questions to a coordinator that had nothing for us
+constexpr int kIdlePriority = 1000;    // robots without a task make room for those that have one
+
+}  // namespace
+
+Explorer::Explorer(RobotId self, RobotSpec spec, const GridGeometry& geometry, const ExplorerSettings& settings,
+                   Body& body, link::Bus& bus, std::unique_ptr<ScanMapper> mapper,
+                   std::unique_ptr<Coordinator> coordinator, EventSink sink)
+    : self_(self),
+      spec_(std::move(spec)),
+      settings_(settings),
+      body_(body),
+      bus_(bus),
+      mapper_(std::move(mapper)),
+      coordinator_(std::move(coordinator)),
+      sink_(std::move(sink)),
+      map_(geometry),
+      seen_(geometry),
+      passable_(geometry, spec_.radius),
+      traffic_(geometry, spec_.radius),
+      board_(spec_, geometry),
+      pose_(spec_.start),
+      priority_(kIdlePriority + self) {}
+
+void Explorer::sense(double now_s) {
+  const Sensing& sensing = body_.sense();
+  pose_ = sensing.pose;
+  arrived_ = sensing.arrived;
+  blocked_ = sensing.blocked;
+  sightings_ = sensing.sightings;
+  take_in(sensing);
+  changed_ = map_.take_changed();
+  if (!changed_.empty()) {
+    passable_.update(map_.states(), changed_);
+    map_news_s_ = now_s;
+  }
+  share(now_s);
+}
+
+void Explorer::take_in(const Sensing& sensing) {
+  observed_.clear();
+  const auto see = [&](std::uint32_t index, CellState state) {
+    if (!seen_[index]) {
+      seen_[index] = 1;
+      observed_.push_back(index);
+      if (map_.states()[index] == CellState::kUnknown) new_area_ += map_.states().geometry().cell_area();
+    }
+    map_.observe(index, state);
+  };
+  for (const SeenCell& cell : sensing.cells) see(cell.index, cell.state);
+  std::vector<std::uint32_t> changed;
+  for (const PosedScan& scan : sensing.scans) mapper_->insert(scan, changed);
+  for (const std::uint32_t index : changed)
+    if (mapper_->states()[index] != CellState::kUnknown) see(index, mapper_->states()[index]);
+}
+
+void Explorer::share(double now_s) {
+  if (auto cells = map_.take_to_share(); !cells.empty()) bus_.send(MapUpdate{self_, ++seq_, std::move(cells)});
+  if (status_news_ || now_s >= status_due_s_) send_status(now_s);
+}
+
+void Explorer::send_status(double now_s) {
+  StatusMessage status{.robot = self_, .seq = ++seq_, .pose = pose_};
+  if (task_) status.goal = task_->cell;
+  trim_way();
+  status.way.assign(way_.begin(), way_.begin() + static_cast<std::ptrdiff_t>(std::min(way_.size(), StatusMessage::kMaxWay)));
+  status.speed = spec_.speed;
+  status.range = spec_.range;
+  status.radius = spec_.radius;
+  status.explored_rate = rate_.value();
+  status.done = phase_ != Phase::kExploring;
+  status.priority = priority_;
+  status.asks = asks_;
+  bus_.send(std::move(status));
+  status_news_ = false;
+  status_due_s_ = now_s + settings_.status_period;
+}
+
+bool Explorer::listen(double now_s) {
+  const auto mail = bus_.receive();
+  for (const auto& delivery : mail) hear(delivery, now_s);
+  if (auto news = map_.take_changed(); !news.empty()) {
+    passable_.update(map_.states(), news);
+    changed_.insert(changed_.end(), news.begin(), news.end());
+    map_news_s_ = now_s;
+  }
+  if (!inbox_.empty()) run_coordinator(now_s);
+  return !mail.empty();
+}
+
+void Explorer::hear(const link::Delivery& delivery, double now_s) {
+  const Message& message = *delivery.message;
+  if (const auto* update = std::get_if<MapUpdate>(&message)) {
+    for (const CellChange& change : update->cells) map_.merge(change);
+  } else if (const auto* status = std::get_if<StatusMessage>(&message)) {
+    auto mate = std::lower_bound(team_.begin(), team_.end(), status->robot,
+                                 [](const Teammate& t, RobotId robot) { return t.robot < robot; });
+    if (mate == team_.end() || mate->robot != status->robot) mate = team_.insert(mate, Teammate{status->robot, {}, 0.0});
+    *mate = Teammate{status->robot, *status, now_s};
+  } else {
+    inbox_.push_back(delivery);
+  }
+}
+
+void Explorer::act(double now_s) {
+  if (phase_ == Phase::kExploring) {
+    check_task(now_s);
+    run_coordinator(now_s);
+  } else if (phase_ == Phase::kReturning) {
+    go_home(now_s);
+  } else if (map_news_s_ >= now_s) {  // a team-mate may have opened up new ground for us
+    phase_ = Phase::kExploring;
+  }
+  give_way(now_s);
+  resolve_block(now_s);
+  if (status_news_) send_status(now_s);
+}
+
+void Explorer::check_task(double now_s) {
+  if (!task_) return;
+  if (!decision::is_frontier(map_.states(), task_->cell))
+    return end_task(arrived_ ? "reached" : "seen from afar", now_s);
+  if (!changed_.empty() && !way_is_passable() && !making_room_for_ && !plan(task_->stand))
+    return end_task("no way", now_s);
+  if (!arrived_ || here() != task_->stand || making_room_for_) {
+    arrived_s_ = now_s;
+  } else if (now_s > arrived_s_ + kLookAround) {
+    board_.give_up(task_->cell);
+    end_task("not observable", now_s);
+  }
+}
+
+void Explorer::end_task(const char* how, double now_s) {
+  sink_(now_s, TaskEndEvent{self_, task_->cell, how});
+  task_.reset();
+  refused_s_ = -1e9;
+  priority_ = base_priority();
+  status_news_ = true;
+}
+
+void Explorer::run_coordinator(double now_s) {
+  heard_.clear();
+  for (const Teammate& mate : team_)
+    if (now_s <= mate.heard_s + settings_.silent_after) heard_.push_back(mate);
+  if (now_s > period_begin_s_ && (!inbox_.empty() || !task_)) {  // an auction period ends: eq. 6 to 9
+    rate_.add(new_area_, now_s - period_begin_s_);
+    new_area_ = 0.0;
+    period_begin_s_ = now_s;
+  }
+  const std::function<std::vector<BidEntry>(const TaskGrain&)> tasks = [this](const TaskGrain& grain) {
+    return board_.entries(map_.states(), passable_, here(), grain);
+  };
+  const bool needs_task = !task_ && phase_ == Phase::kExploring &&
+                          (map_news_s_ > refused_s_ || now_s >= refused_s_ + kAskAgain);
+  const Situation situation{now_s, self_, spec_, pose_, map_.states(), heard_, task_, needs_task, rate_.value(),
+                            inbox_, tasks};
+  Decision decision = coordinator_->decide(situation);
+  inbox_.clear();
+  for (Message& message : decision.send) bus_.send(std::move(message));
+  for (const AuctionRecord& record : decision.records) sink_(now_s, record);
+  apply(decision, now_s);
+}
+
+void Explorer::apply(const Decision& decision, double now_s) {
+  using Verdict = Decision::Verdict;
+  if (decision.verdict == Verdict::kGo) {
+    if (phase_ == Phase::kDone) phase_ = Phase::kExploring;
+    if (task_ == decision.task) return;
+    if (!plan(decision.task->stand)) {
+      refused_s_ = now_s;
+      return;
+    }
+    task_ = decision.task;
+    arrived_s_ = now_s;
+    making_room_for_.reset();
+    priority_ = base_priority();
+    status_news_ = true;
+    sink_(now_s, GoalEvent{self_, *task_, static_cast<double>(way_.size()) * map_.states().geometry().resolution,
+                           decision.value});
+  } else if (decision.verdict == Verdict::kIdle) {
+    refused_s_ = now_s;
+    if (task_) {
+      end_task("reassigned", now_s);
+      refused_s_ = now_s;
+      stop();
+    }
+  } else if (decision.verdict == Verdict::kNothing && phase_ == Phase::kExploring) {
+    nothing_left(now_s);
+  }
+}
+
+void Explorer::nothing_left(double now_s) {
+  refused_s_ = now_s;
+  phase_ = Phase::kDone;
+  const Cell home = map_.states().geometry().cell_of(spec_.start.position());
+  if (settings_.return_home && here() != home) phase_ = Phase::kReturning;
+  sink_(now_s, PhaseEvent{self_, phase_ == Phase::kDone ? "done" : "returning"});
+  if (!making_room_for_) stop();
+  status_news_ = true;
+}
+
+void Explorer::go_home(double now_s) {
+  const Cell home = map_.states().geometry().cell_of(spec_.start.position());
+  if (here() == home && arrived_) {
+    phase_ = Phase::kDone;
+    priority_ = base_priority();
+    sink_(now_s, PhaseEvent{self_, "home"});
+  } else if (arrived_ && !making_room_for_) {
+    plan(home);
+  }
+}
+
+void Explorer::restart(double now_s) {
+  task_.reset();
+  way_.clear();
+  phase_ = Phase::kExploring;
+  asks_.reset();
+  making_room_for_.reset();
+  blocked_since_s_ = -1.0;
+  refused_s_ = -1e9;
+  period_begin_s_ = now_s;
+  status_news_ = true;
+}
+
+}  // namespace outrider::explorer

@@ -1,0 +1,152 @@
+#pragma once
+// One robot: scan -> map -> frontiers -> coordinate -> goal -> motion. Runs unchanged in the simulator and live.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "decision/traffic.hpp"
+#include "explorer/coordinator.hpp"
+#include "link/bus.hpp"
+#include "world/body.hpp"
+#include "world/team_map.hpp"
+
+namespace outrider::explorer {
+
+/// How scans become changed cells: the map of record of one robot (slam_glue's GridMapper, or a test's own).
+class ScanMapper {
+ public:
+  virtual ~ScanMapper() = default;
+  /// Inserts a scan; appends the indices of cells whose three-state value changed.
+  virtual void insert(const PosedScan& scan, std::vector<std::uint32_t>& changed) = 0;
+  virtual const OccupancyGrid& states() const = 0;
+};
+
+struct ExplorerSettings {
+  double status_period = 0.5;    ///< [s] between status messages when nothing changes
+  double silent_after = 2.0;     ///< a team-mate not heard for this long does not bid [s]
+  bool return_home = false;      ///< drive back to the start when nothing is left
+  TaskGrain grain;
+};
+
+struct GoalEvent {
+  RobotId robot;
+  Task task;
+  double distance_m;
+  double value;
+};
+struct TaskEndEvent {
+  RobotId robot;
+  Cell task;
+  const char* how;  ///< "reached", "seen from afar", "no way", "not observable", "blocked", "reassigned"
+};
+struct PhaseEvent {
+  RobotId robot;
+  const char* phase;  ///< "idle", "done", "returning", "home", "making room"
+};
+struct FaultEvent {
+  RobotId robot;
+  const char* what;  ///< "kill", "revive", "slow"
+};
+using Event = std::variant<GoalEvent, TaskEndEvent, PhaseEvent, FaultEvent, AuctionRecord>;
+using EventSink = std::function<void(double t, const Event&)>;
+
+/// One robot of the team. Owns its map and its coordinator; body, bus and mapper come from outside.
+class Explorer {
+ public:
+  /// `mapper` may be null when the body senses cells. All references must outlive the explorer.
+  Explorer(RobotId self, RobotSpec spec, const GridGeometry& geometry, const ExplorerSettings& settings, Body& body,
+           link::Bus& bus, std::unique_ptr<ScanMapper> mapper, std::unique_ptr<Coordinator> coordinator, EventSink sink);
+
+  /// Takes in what the body sensed, updates the map, shares news. `now_s` never decreases.
+  void sense(double now_s);
+  /// Handles mail. True when there was any.
+  bool listen(double now_s);
+  /// Decides where to go when that is due, and drives.
+  void act(double now_s);
+
+  bool done() const { return phase_ == Phase::kDone; }    ///< nothing left, and home if asked to return
+  bool exploring() const { return phase_ == Phase::kExploring; }
+  bool under_way() const { return task_.has_value(); }
+  const OccupancyGrid& map() const { return map_.states(); }
+  /// Cells that the own sensor saw for the first time during the last sense().
+  const std::vector<std::uint32_t>& observed() const { return observed_; }
+  const Pose2& pose() const { return pose_; }
+  std::optional<Task> task() const { return task_; }
+  std::vector<Left> left() { return board_.left(map_.states()); }
+  double explored_rate() const { return rate_.value(); }
+  /// A revived robot forgets where it was going, not what it knows.
+  void restart(double now_s);
+
+ private:
+  enum class Phase { kExploring, kReturning, kDone };
+
+  void take_in(const Sensing& sensing);
+  void share(double now_s);
+  void send_status(double now_s);
+  void hear(const link::Delivery& delivery, double now_s);
+  void run_coordinator(double now_s);
+  void apply(const Decision& decision, double now_s);
+  void check_task(double now_s);
+  void end_task(const char* how, double now_s);
+  void nothing_left(double now_s);
+  void go_home(double now_s);
+  bool plan(Cell stand);
+  void drive(std::vector<Cell> way);
+  void stop();
+  bool way_is_passable() const;
+  void trim_way();
+  void give_way(double now_s);
+  void resolve_block(double now_s);
+  std::vector<decision::Neighbour> neighbours() const;
+  int base_priority() const;
+  Cell here() const { return map_.states().geometry().cell_of(pose_.position()); }
+  bool safe_straight(Point from, Point to) const;
+
+  RobotId self_;
+  RobotSpec spec_;
+  ExplorerSettings settings_;
+  Body& body_;
+  link::Bus& bus_;
+  std::unique_ptr<ScanMapper> mapper_;
+  std::unique_ptr<Coordinator> coordinator_;
+  EventSink sink_;
+
+  TeamMap map_;
+  Grid<std::uint8_t> seen_;            // 1 where the own sensor saw the cell
+  decision::Passability passable_;
+  decision::Traffic traffic_;
+  TaskBoard board_;
+  auction::ExploredRate rate_;
+  std::vector<std::uint32_t> observed_, changed_;
+
+  Phase phase_ = Phase::kExploring;
+  Pose2 pose_;
+  bool arrived_ = true, blocked_ = false;
+  std::vector<Sighting> sightings_;
+  std::vector<Teammate> team_;         // sorted by robot, everybody ever heard
+  std::vector<Teammate> heard_;        // those heard recently, refreshed each decision
+  std::vector<link::Delivery> inbox_;
+  std::uint32_t seq_ = 0;
+
+  std::optional<Task> task_;
+  std::vector<Cell> way_;              // from the current cell on, what is left to drive
+  double map_news_s_ = 0.0;            // when the map last changed
+  double refused_s_ = -1e9;            // when the coordinator last had nothing for us
+  double arrived_s_ = 0.0;             // when the stand was reached
+  double new_area_ = 0.0;              // Delta A of the auction period so far [m^2]
+  double period_begin_s_ = 0.0;
+  double status_due_s_ = 0.0;
+  bool status_news_ = true;
+
+  double blocked_since_s_ = -1.0;      // < 0: not blocked
+  double last_try_s_ = -1e9;
+  std::optional<RobotId> asks_;        // whom we ask to make room
+  std::optional<RobotId> making_room_for_;
+  double making_room_until_s_ = 0.0;
+  int priority_ = 0;
+};
+
+}  // namespace outrider::explorer

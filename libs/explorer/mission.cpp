@@ -1,0 +1,212 @@
+#include "explorer/mission.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "explorer/referee.hpp"
+#include "explorer/scan_mapper.hpp"
+
+namespace outrider::explorer {
+namespace {
+
+constexpr int kMostMailRounds = 64;  // of messages answering messages within one step
+
+/// The running mission: owns world, radio and minds; one step after the other.
+class Mission {
+ public:
+  Mission(const OccupancyGrid& truth, const std::vector<RobotSpec>& team, const MissionSettings& settings)
+      : settings_(settings),
+        simulator_(truth, team, settings.sim),
+        ether_(static_cast<int>(team.size()), settings.link ? settings.link : link::ideal_link()),
+        referee_(truth, team) {
+    const EventSink sink = [this](double t, const Event& event) {
+      if (settings_.record_events) result_.events.push_back({t, event});
+    };
+    for (std::size_t r = 0; r < team.size(); ++r) {
+      const auto id = static_cast<RobotId>(r);
+      robots_.push_back(std::make_unique<Explorer>(
+          id, team[r], truth.geometry(), settings.explorer, simulator_.body(id), ether_.endpoint(id),
+          settings.sim.lidar ? make_scan_mapper(truth.geometry(), team[r]) : nullptr,
+          make_coordinator(settings.coordinator, settings.coordination), sink));
+    }
+  }
+
+  MissionResult run(const MissionProgress& progress) {
+    const double most_s = settings_.max_time_s > 0.0 ? settings_.max_time_s : referee_.patience_s();
+    for (std::uint64_t step = 0;; ++step) {
+      if (step > 0) simulator_.step();
+      now_s_ = static_cast<double>(step) * settings_.sim.dt;
+      inject_faults();
+      tick();
+      if (finished()) break;
+      if (now_s_ >= most_s) {
+        result_.status = MissionStatus::kTimeout;
+        break;
+      }
+      if (progress && step % 64 == 0 && !progress(now_s_, referee_.explored_fraction())) {
+        result_.status = MissionStatus::kInterrupted;
+        break;
+      }
+    }
+    return conclude();
+  }
+
+ private:
+  bool alive(RobotId robot) const { return simulator_.alive(robot); }
+
+  void tick() {
+    ether_.set_time(now_s_);
+    for_living([&](Explorer& robot, RobotId id) {
+      robot.sense(now_s_);
+      referee_.saw(id, robot.observed(), now_s_);
+    });
+    exchange();
+    for_living([&](Explorer& robot, RobotId) {
+      const auto begin = std::chrono::steady_clock::now();
+      robot.act(now_s_);
+      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+      if (took.count() > 0.02) result_.decision_ms.push_back(took.count());
+    });
+    exchange();
+    for (RobotId id = 0; id < static_cast<RobotId>(robots_.size()); ++id)
+      referee_.stands(id, {now_s_, simulator_.pose(id)});
+    referee_.tick(now_s_);
+    count_interactions();
+  }
+
+  void count_interactions() {
+    constexpr double kClose = 1.0;  // [m]
+    const std::size_t n = robots_.size();
+    close_.resize(n * n);
+    for (std::size_t a = 0; a < n; ++a) {
+      bool any = false;
+      for (std::size_t b = 0; b < n; ++b) {
+        if (a == b) continue;
+        const bool close = distance(simulator_.pose(static_cast<RobotId>(a)).position(),
+                                    simulator_.pose(static_cast<RobotId>(b)).position()) < kClose;
+        result_.interactions += close && !close_[a * n + b] && a < b;
+        close_[a * n + b] = close;
+        any = any || close;
+      }
+      if (any) result_.interaction_s += settings_.sim.dt;
+    }
+  }
+
+  /// Messages are answered within the step until the air is quiet.
+  void exchange() {
+    for (int round = 0; round < kMostMailRounds && ether_.pending(); ++round)
+      for_living([&](Explorer& robot, RobotId) { robot.listen(now_s_); });
+    for (RobotId id = 0; id < static_cast<RobotId>(robots_.size()); ++id)
+      if (!alive(id)) ether_.endpoint(id).receive();  // the dead hear nothing
+  }
+
+  template <class Do>
+  void for_living(Do&& act) {
+    for (RobotId id = 0; id < static_cast<RobotId>(robots_.size()); ++id)
+      if (alive(id)) act(*robots_[static_cast<std::size_t>(id)], id);
+  }
+
+  void inject_faults() {
+    for (; next_fault_ < settings_.faults.size() && settings_.faults[next_fault_].t <= now_s_; ++next_fault_) {
+      const Fault& fault = settings_.faults[next_fault_];
+      const char* what = "kill";
+      switch (fault.kind) {
+        case Fault::Kind::kKill: simulator_.kill(fault.robot); break;
+        case Fault::Kind::kSlow:
+          what = "slow";
+          simulator_.set_speed_factor(fault.robot, fault.factor);
+          break;
+        case Fault::Kind::kRevive:
+          what = "revive";
+          simulator_.revive(fault.robot);
+          robots_[static_cast<std::size_t>(fault.robot)]->restart(now_s_);
+          break;
+      }
+      if (settings_.record_events) result_.events.push_back({now_s_, FaultEvent{fault.robot, what}});
+    }
+  }
+
+  /// Sets the status when the mission is over.
+  bool finished() {
+    bool any_alive = false, all_done = true, exploring = false;
+    for_living([&](Explorer& robot, RobotId) {
+      any_alive = true;
+      all_done = all_done && robot.done();
+      exploring = exploring || robot.exploring();
+    });
+    if (!any_alive && next_fault_ == settings_.faults.size()) {
+      result_.status = MissionStatus::kFailed;
+      return true;
+    }
+    if (exploring) explored_at_s_ = now_s_;
+    const bool aim_reached = settings_.until < 1.0 && referee_.explored_fraction() >= settings_.until;
+    if (!all_done && !(aim_reached && !settings_.explorer.return_home)) return false;
+    if (any_alive && all_done) exchange();
+    result_.status = aim_reached || referee_.explored_fraction() >= Referee::kExplored
+                         ? MissionStatus::kExplored : MissionStatus::kUnreachableLeft;
+    return any_alive;
+  }
+
+  MissionResult conclude() {
+    referee_.tick(now_s_);
+    result_.time_s = result_.status == MissionStatus::kTimeout ? now_s_ : explored_at_s_;
+    result_.mission_time_s = now_s_;
+    result_.radio = ether_.counters();
+    std::vector<OccupancyGrid> maps;
+    for (std::size_t r = 0; r < robots_.size(); ++r) {
+      maps.push_back(robots_[r]->map());
+      result_.robots.push_back(referee_.robot(static_cast<RobotId>(r)));
+      result_.robots.back().map = robots_[r]->map();
+      result_.robots.back().path_m = simulator_.path_m(static_cast<RobotId>(r));
+    }
+    referee_.conclude(maps, result_);
+    result_.maps_equal = true;
+    std::optional<std::size_t> first;
+    for_living([&](Explorer&, RobotId id) {
+      const auto r = static_cast<std::size_t>(id);
+      if (!first) first = r;
+      result_.maps_equal = result_.maps_equal && maps[*first] == maps[r];
+    });
+    result_.left = robots_[first.value_or(0)]->left(result_.map);
+    for (auto& robot : robots_) merge_reasons(robot->left(result_.map));
+    return std::move(result_);
+  }
+
+  /// A frontier that anybody tried in vain is not observable, whatever the first robot thinks of it.
+  void merge_reasons(const std::vector<Left>& other) {
+    for (std::size_t k = 0; k < std::min(other.size(), result_.left.size()); ++k)
+      if (other[k].why == LeftReason::kNotObservable) result_.left[k].why = other[k].why;
+  }
+
+  const MissionSettings& settings_;
+  sim::Simulator simulator_;
+  link::Ether ether_;
+  Referee referee_;
+  std::vector<std::unique_ptr<Explorer>> robots_;
+  MissionResult result_;
+  std::vector<char> close_;  // n x n: closer than kClose in the last step
+  std::size_t next_fault_ = 0;
+  double now_s_ = 0.0;
+  double explored_at_s_ = 0.0;  // last time anybody was still exploring
+};
+
+}  // namespace
+
+std::string to_string(MissionStatus status) {
+  switch (status) {
+    case MissionStatus::kExplored: return "explored";
+    case MissionStatus::kUnreachableLeft: return "unreachable_left";
+    case MissionStatus::kTimeout: return "timeout";
+    case MissionStatus::kFailed: return "failed";
+    case MissionStatus::kInterrupted: return "interrupted";
+  }
+  return "";
+}
+
+MissionResult run_mission(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
+                          const MissionSettings& settings, const MissionProgress& progress) {
+  return Mission(truth, team, settings).run(progress);
+}
+
+}  // namespace outrider::explorer
