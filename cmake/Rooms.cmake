@@ -18,5 +18,6 @@ function(outrider_room name)
 endfunction()
 
 function(outrider_warnings target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow
+                         -Wno-missing-field-initializers) # designated initialisers leave defaults out on purpose
 endfunction()

@@ -38,16 +38,21 @@ extern "C" void on_interrupt(int signal) {
   }
 }
 
+const CLI::App* verb_called(const CLI::App& app, const std::string& name) {
+  for (const auto* sub : app.get_subcommands(nullptr))
+    if (sub->get_name() == name) return sub;
+  return nullptr;
+}
+
 /// The verb and flag names a mistyped word may have been meant to be.
 std::string usage_hint(const CLI::App& app, const std::vector<std::string>& argv) {
-  const CLI::App* verb = &app;
-  std::vector<std::string> verbs;
-  for (const auto* sub : app.get_subcommands(nullptr)) verbs.push_back(sub->get_name());
-  if (argv.size() > 1 && !argv[1].starts_with("-")) {
-    const auto* sub = app.get_subcommand_no_throw(argv[1]);
-    if (sub == nullptr) return fmt::format("unknown verb '{}'{}", argv[1], suggestion(argv[1], verbs));
-    verb = sub;
+  const CLI::App* verb = verb_called(app, argv.size() > 1 ? argv[1] : "");
+  if (verb == nullptr && argv.size() > 1 && !argv[1].starts_with("-")) {
+    std::vector<std::string> verbs;
+    for (const auto* sub : app.get_subcommands(nullptr)) verbs.push_back(sub->get_name());
+    return fmt::format("unknown verb '{}'{}", argv[1], suggestion(argv[1], verbs));
   }
+  if (verb == nullptr) verb = &app;
   std::vector<std::string> flags;
   for (const auto* option : verb->get_options())
     for (const auto& name : option->get_lnames()) flags.push_back("--" + name);
@@ -81,7 +86,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     const std::string hint = usage_hint(app, ctx.argv);
     fmt::print(stderr, "outrider: {}\nSee 'outrider {}--help'.\n", hint.empty() ? e.what() : hint,
-               argc > 1 && app.get_subcommand_no_throw(argv[1]) != nullptr ? std::string(argv[1]) + " " : "");
+               argc > 1 && verb_called(app, argv[1]) != nullptr ? std::string(argv[1]) + " " : "");
     return kBadInput;
   }
   return ctx.exit_code;

@@ -75,7 +75,8 @@ class Explorer {
   const std::vector<std::uint32_t>& observed() const { return observed_; }
   const Pose2& pose() const { return pose_; }
   std::optional<Task> task() const { return task_; }
-  std::vector<Left> left() { return board_.left(map_.states()); }
+  /// Frontiers of `map` (the team's) that are left, as this robot sees them.
+  std::vector<Left> left(const OccupancyGrid& map) { return board_.left(map); }
   double explored_rate() const { return rate_.value(); }
   /// A revived robot forgets where it was going, not what it knows.
   void restart(double now_s);
