@@ -39,7 +39,8 @@ World embedded_world(std::string_view name);
 
 /// Reads the text format of datasets/ (see datasets/README.md): `key: value` lines, then `map:` and the rows, top row
 /// first: `#` wall, `.` free, digits = free start cells 0 to 9. Text without a `map:` line is all map.
-/// `source` names the text in errors (InputError, with the line); `resolution` [m] holds unless the text gives one.
+/// `source` names the world, and the text in errors (InputError, with the line); `resolution` [m] holds unless the text
+/// gives one.
 World parse_world(std::string_view text, std::string_view source, double resolution = 1.0);
 
 /// A start pose for each of `radii.size()` robots [m]: the world's own starts in order, then, for the robots left over,

@@ -1,0 +1,130 @@
+// Where a team may begin.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <queue>
+#include <tuple>
+
+#include "sim/walls.hpp"
+#include "sim/world.hpp"
+#include "world/error.hpp"
+
+namespace outrider::sim {
+namespace {
+
+constexpr double kSpare = 0.1;  ///< of the sum of two radii, between robots that were not placed by hand
+
+struct Placed {
+  Pose2 pose;
+  double radius;
+};
+
+bool apart(const std::vector<Placed>& placed, Point p, double radius, double spare) {
+  return std::all_of(placed.begin(), placed.end(), [&](const Placed& other) {
+    const double least = (other.radius + radius) * (1.0 + spare) - kTouchTolerance;
+    return distance(other.pose.position(), p) >= least;
+  });
+}
+
+/// Visits the cells that a disc can reach from `sources`, nearest by way first, until `visit(cell, source)` is false.
+/// 8 neighbours; a diagonal step needs both cells beside it.
+template <class Visit>
+void spread(const Walls& walls, const GridGeometry& g, const std::vector<Cell>& sources, Visit&& visit) {
+  struct Open {
+    double way;
+    std::size_t cell, source;
+    bool operator>(const Open& other) const { return std::tie(way, cell) > std::tie(other.way, other.cell); }
+  };
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  std::vector<bool> closed(g.size(), false);
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (g.contains(sources[i])) open.push({0.0, g.index(sources[i]), i});
+  while (!open.empty()) {
+    const Open at = open.top();
+    open.pop();
+    if (closed[at.cell]) continue;
+    closed[at.cell] = true;
+    const Cell c = g.cell_at(at.cell);
+    if (walls.passable(c) && !visit(c, at.source)) return;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell next{c.x + dx, c.y + dy};
+        if (walls.passable(next) && !closed[g.index(next)] && walls.passable({next.x, c.y}) &&
+            walls.passable({c.x, next.y}))
+          open.push({at.way + std::hypot(dx, dy), g.index(next), at.source});
+      }
+  }
+}
+
+/// The passable cell nearest to the middle of the largest region that a disc can drive in.
+std::optional<Cell> middle_of_largest_region(const Walls& walls, const GridGeometry& g) {
+  std::vector<bool> known(g.size(), false);
+  std::vector<Cell> largest;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    if (known[i] || !walls.passable(g.cell_at(i))) continue;
+    std::vector<Cell> region;
+    spread(walls, g, {g.cell_at(i)}, [&](Cell c, std::size_t) {
+      known[g.index(c)] = true;
+      region.push_back(c);
+      return true;
+    });
+    if (region.size() > largest.size()) largest = std::move(region);
+  }
+  if (largest.empty()) return std::nullopt;
+  const Point middle = g.center({g.width / 2, g.height / 2});
+  return *std::min_element(largest.begin(), largest.end(), [&](Cell a, Cell b) {
+    const double da = distance(g.center(a), middle), db = distance(g.center(b), middle);
+    return std::pair(da, g.index(a)) < std::pair(db, g.index(b));
+  });
+}
+
+}  // namespace
+
+std::vector<Pose2> spread_starts(const World& world, std::span<const double> radii) {
+  const GridGeometry& g = world.map.geometry();
+  std::map<double, Walls> walls;
+  for (const double radius : radii) walls.try_emplace(radius, world.map, radius);
+
+  std::vector<Pose2> sources = world.starts;
+  if (sources.empty() && !radii.empty())
+    if (const auto middle = middle_of_largest_region(walls.rbegin()->second, g))
+      sources.push_back({g.center(*middle).x, g.center(*middle).y, 0.0});
+  std::vector<Cell> source_cells;
+  for (const Pose2& source : sources) source_cells.push_back(g.cell_of(source.position()));
+
+  std::vector<Placed> placed;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const double radius = radii[i];
+    const Walls& body_walls = walls.at(radius);
+    std::optional<Pose2> pose;
+    if (i < world.starts.size()) {
+      const Pose2& start = world.starts[i];
+      if (!body_walls.fits(start.position()))
+        throw InputError(fmt::format("robot {} at ({:g}, {:g}): its start is in a wall or off the map (radius {:g} m)",
+                                     i + 1, start.x, start.y, radius));
+      if (apart(placed, start.position(), radius, 0.0)) pose = start;
+    }
+    if (!pose) {
+      // A start that another robot holds is moved to the nearest free place; robots without one go to any of them.
+      const auto near = i < source_cells.size() ? std::vector<Cell>{source_cells[i]} : source_cells;
+      spread(body_walls, g, near, [&](Cell c, std::size_t source) {
+        const Point p = g.center(c);
+        if (!apart(placed, p, radius, kSpare)) return true;
+        pose = Pose2{p.x, p.y, sources[i < source_cells.size() ? i : source].theta};
+        return false;
+      });
+    }
+    if (!pose)
+      throw InputError(
+          fmt::format("no room for robot {} of {} (radius {:g} m) near the start poses", i + 1, radii.size(), radius));
+    placed.push_back({*pose, radius});
+  }
+  std::vector<Pose2> poses;
+  for (const Placed& robot : placed) poses.push_back(robot.pose);
+  return poses;
+}
+
+}  // namespace outrider::sim
