@@ -22,7 +22,10 @@ std::vector<BidSheet> random_sheets(std::mt19937_64& random, int n, int m) {
   std::uniform_int_distribution<int> cell(0, 59), coin(0, 9);
   std::uniform_real_distribution<float> gain(0.0F, 50.0F), stretch(1.0F, 1.5F);
   std::vector<Cell> tasks;
-  for (int p = 0; p < m; ++p) tasks.push_back({cell(random), cell(random)});
+  for (int p = 0; p < m; ++p) {
+    const Cell task{cell(random), cell(random)};
+    if (std::find(tasks.begin(), tasks.end(), task) == tasks.end()) tasks.push_back(task);
+  }
   std::vector<BidSheet> sheets;
   for (int i = 0; i < n; ++i) {
     BidSheet sheet;
