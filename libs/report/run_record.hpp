@@ -16,6 +16,11 @@ namespace outrider::report {
 
 using Json = nlohmann::ordered_json;
 
+/// JSON text; bytes that are no UTF-8 (they may come in with a file name) are replaced, not refused.
+inline std::string to_text(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 /// One robot's part of a run.
 struct RobotRecord {
   RobotSpec spec;                     ///< name, abilities, start

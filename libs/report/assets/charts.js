@@ -1,0 +1,152 @@
+"use strict";
+// What the pages share: colours that colour-blind readers can tell apart (Okabe and Ito), chart defaults, a time cursor.
+
+const kPalette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7b5aa6", "#8a8a8a"];
+const kDashes = [[], [7, 3], [2, 3]];
+const colourOf = (i) => kPalette[i % kPalette.length];
+const dashOf = (i) => kDashes[Math.floor(i / kPalette.length) % kDashes.length];
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const byId = (id) => document.getElementById(id);
+const pageData = () => JSON.parse(byId("data").textContent);
+
+/** An element with properties and children; text never becomes markup. */
+function element(tag, properties = {}, ...children) {
+  const node = Object.assign(document.createElement(tag), properties);
+  node.append(...children);
+  return node;
+}
+
+const allCharts = [];
+
+function applyTheme() {
+  Chart.defaults.color = css("--muted");
+  Chart.defaults.borderColor = css("--rule");
+  for (const chart of allCharts) {
+    for (const scale of Object.values(chart.options.scales)) {
+      scale.grid.color = scale.grid.borderColor = css("--rule");
+      scale.ticks.color = scale.title.color = css("--muted");
+    }
+    chart.options.plugins.legend.labels.color = css("--muted");
+    for (const set of chart.data.datasets) if (set.ink) set.borderColor = css("--ink");
+    chart.update("none");
+  }
+}
+
+Chart.defaults.animation = false;
+Chart.defaults.maintainAspectRatio = false;
+Chart.defaults.font.family = css("--sans");
+Chart.defaults.font.size = 12;
+applyTheme();
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", applyTheme);
+addEventListener("beforeprint", () => allCharts.forEach((chart) => chart.resize()));
+
+function axis(title, options = {}) {
+  const { ticks, grid, ...others } = options;
+  return {
+    title: { display: title !== "", text: title },
+    grid: { drawTicks: false, borderColor: css("--rule"), ...grid },
+    ticks: { padding: 6, maxRotation: 0, ...ticks },
+    ...others,
+  };
+}
+
+function addChart(canvas, config) {
+  const chart = new Chart(canvas, config);
+  allCharts.push(chart);
+  return chart;
+}
+
+/** Curves over time. series: [{label, t, y, colour ("" = ink), width, dash}]; onSeek(time) is called on a click. */
+function curveChart(canvas, series, yTitle, onSeek) {
+  const cursor = {
+    id: "cursor",
+    time: null,
+    afterDatasetsDraw(chart) {
+      if (this.time === null) return;
+      const { ctx, chartArea, scales } = chart;
+      const x = scales.x.getPixelForValue(this.time);
+      ctx.save();
+      ctx.strokeStyle = css("--muted");
+      ctx.beginPath();
+      ctx.moveTo(x, chartArea.top);
+      ctx.lineTo(x, chartArea.bottom);
+      ctx.stroke();
+      ctx.restore();
+    },
+  };
+  const last = Math.max(0, ...series.map((s) => s.t[s.t.length - 1] || 0));
+  const chart = addChart(canvas, {
+    type: "line",
+    data: {
+      datasets: series.map((s) => ({
+        label: s.label,
+        data: s.t.map((t, i) => ({ x: t, y: s.y[i] })),
+        borderColor: s.colour || css("--ink"),
+        ink: !s.colour,
+        borderWidth: s.width,
+        borderDash: s.dash || [],
+        pointRadius: 0,
+        pointHitRadius: 6,
+      })),
+    },
+    options: {
+      parsing: false,
+      normalized: true,
+      interaction: { mode: "nearest", axis: "x", intersect: false },
+      onClick: (event, _, c) => onSeek && onSeek(c.scales.x.getValueForPixel(event.x)),
+      scales: {
+        x: axis("time [s]", { type: "linear", min: 0, max: last || 1, grid: { display: false } }),
+        y: axis(yTitle, { min: 0, suggestedMax: 1, ticks: { callback: (v) => Math.round(100 * v) + " %" } }),
+      },
+      plugins: {
+        legend: { display: series.length > 1, align: "end", labels: { boxWidth: 18, boxHeight: 0, padding: 12 } },
+        tooltip: {
+          callbacks: {
+            title: (items) => items[0].parsed.x.toFixed(1) + " s",
+            label: (item) => `${item.dataset.label}: ${(100 * item.parsed.y).toFixed(1)} %`,
+          },
+        },
+      },
+    },
+    plugins: [cursor],
+  });
+  return {
+    setTime(time) {
+      cursor.time = time;
+      chart.draw();
+    },
+  };
+}
+
+/** Horizontal bars. unit(value) makes the label of a value. */
+function barChart(canvas, labels, values, colours, unit) {
+  canvas.parentElement.style.height = `${Math.max(120, 46 + 26 * labels.length)}px`;
+  addChart(canvas, {
+    type: "bar",
+    data: { labels, datasets: [{ data: values, backgroundColor: colours, maxBarThickness: 16 }] },
+    options: {
+      indexAxis: "y",
+      layout: { padding: { right: 52 } },
+      scales: {
+        x: axis("", { beginAtZero: true, ticks: { callback: (v) => unit(v), maxTicksLimit: 5 } }),
+        y: axis("", { grid: { display: false }, ticks: { autoSkip: false } }),
+      },
+      plugins: {
+        legend: { display: false },
+        tooltip: { callbacks: { label: (item) => unit(item.parsed.x) } },
+      },
+    },
+    plugins: [{
+      id: "values",
+      afterDatasetsDraw(chart) {
+        const { ctx } = chart;
+        ctx.save();
+        ctx.fillStyle = css("--ink");
+        ctx.font = `12px ${css("--sans")}`;
+        ctx.textBaseline = "middle";
+        chart.getDatasetMeta(0).data.forEach((bar, i) => ctx.fillText(unit(values[i]), bar.x + 6, bar.y));
+        ctx.restore();
+      },
+    }],
+  });
+}
