@@ -1,6 +1,7 @@
 #pragma once
 // How far it is from everywhere to the nearest of some sources.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -27,7 +28,7 @@ class DistanceField {
   void compute(const Grid<std::uint8_t>& mask, std::span<const Cell> sources, double max_m = kNoLimit,
                Steps steps = Steps::kOctile);
 
-  bool reached(Cell c) const { return level(c) != kUnreached; }
+  bool reached(Cell c) const;
   /// Length of the shortest path from `c` to the nearest source [m]; infinity when not reached.
   double metres(Cell c) const;
   /// The shortest path from `from` down to the nearest source, both included; empty when not reached. Among equally
@@ -36,25 +37,21 @@ class DistanceField {
   const GridGeometry& geometry() const { return geometry_; }
 
  private:
-  static constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
-
   template <class D>
-  bool flood(const Grid<std::uint8_t>& mask, std::span<const Cell> sources, std::uint32_t limit,
-             std::vector<D>& levels);
+  bool fill(std::vector<D>& levels, const Grid<std::uint8_t>& mask, std::span<const Cell> sources, std::uint32_t limit);
+  Cell downhill(Cell at, Cell heading) const;
+  std::uint32_t level(Cell c) const;
   std::size_t padded_index(Cell c) const {
     return static_cast<std::size_t>(c.y + 1) * static_cast<std::size_t>(geometry_.width + 2) +
            static_cast<std::size_t>(c.x + 1);
   }
-  /// Distance in units of an edge / edge_weight(); kUnreached outside the grid.
-  std::uint32_t level(Cell c) const;
-  std::uint32_t edge_weight() const { return steps_ == Steps::kOctile ? 5 : 1; }
 
   GridGeometry geometry_;
   Steps steps_ = Steps::kOctile;
   bool narrow_ = true;                   // which of the two holds the field
   std::vector<std::uint16_t> levels16_;  // padded by one blocked cell all around
   std::vector<std::uint32_t> levels32_;
-  std::vector<std::vector<std::uint32_t>> buckets_;
+  std::array<std::vector<std::uint32_t>, 8> buckets_;  // cells by distance, a ring as in Dial 1969
 };
 
 }  // namespace outrider::decision

@@ -49,6 +49,7 @@ class FrontierExtractor {
   std::uint32_t root(std::uint32_t run);
   void number_clusters();
   void describe_clusters(const GridGeometry& g);
+  void find_medoids();
 
   std::vector<std::uint8_t> lowest_, flags_;  // one row each
   std::vector<Run> runs_;
