@@ -1,5 +1,6 @@
 #include "sim/simulated_body.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -19,6 +20,8 @@ const Sensing& SimulatedBody::sense() {
 }
 
 void SimulatedBody::follow(std::span<const Point> way_points) {
+  assert(std::all_of(way_points.begin(), way_points.end(),
+                     [](Point p) { return std::isfinite(p.x) && std::isfinite(p.y); }));
   way_points_.clear();
   next_ = 0;
   leg_.reset();

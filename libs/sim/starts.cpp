@@ -81,46 +81,59 @@ std::optional<Cell> middle_of_largest_region(const Walls& walls, const GridGeome
   });
 }
 
+/// The start poses of a world, or the middle of its largest region, with their cells.
+struct Sources {
+  std::vector<Pose2> poses;
+  std::vector<Cell> cells;
+};
+
+Sources sources_of(const World& world, const Walls& widest) {
+  const GridGeometry& g = world.map.geometry();
+  Sources sources{world.starts, {}};
+  if (sources.poses.empty())
+    if (const auto middle = middle_of_largest_region(widest, g))
+      sources.poses.push_back({g.center(*middle).x, g.center(*middle).y, 0.0});
+  for (const Pose2& pose : sources.poses) sources.cells.push_back(g.cell_of(pose.position()));
+  return sources;
+}
+
+/// The nearest place, by way of free space, to source `only` (to any, if there is no such) with room for a disc.
+std::optional<Pose2> nearest_place(const Sources& sources, std::size_t only, const Walls& walls, const GridGeometry& g,
+                                   const std::vector<Placed>& placed) {
+  const bool any = only >= sources.cells.size();
+  std::optional<Pose2> pose;
+  spread(walls, g, any ? sources.cells : std::vector<Cell>{sources.cells[only]}, [&](Cell c, std::size_t source) {
+    const Point p = g.center(c);
+    if (apart(placed, p, walls.radius(), kSpare)) pose = Pose2{p.x, p.y, sources.poses[any ? source : only].theta};
+    return !pose;
+  });
+  return pose;
+}
+
 }  // namespace
 
 std::vector<Pose2> spread_starts(const World& world, std::span<const double> radii) {
-  const GridGeometry& g = world.map.geometry();
   std::map<double, Walls> walls;
   for (const double radius : radii) walls.try_emplace(radius, world.map, radius);
-
-  std::vector<Pose2> sources = world.starts;
-  if (sources.empty() && !radii.empty())
-    if (const auto middle = middle_of_largest_region(walls.rbegin()->second, g))
-      sources.push_back({g.center(*middle).x, g.center(*middle).y, 0.0});
-  std::vector<Cell> source_cells;
-  for (const Pose2& source : sources) source_cells.push_back(g.cell_of(source.position()));
+  if (radii.empty()) return {};
+  const Sources sources = sources_of(world, walls.rbegin()->second);
 
   std::vector<Placed> placed;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const double radius = radii[i];
-    const Walls& body_walls = walls.at(radius);
+    const Walls& body_walls = walls.at(radii[i]);
     std::optional<Pose2> pose;
     if (i < world.starts.size()) {
       const Pose2& start = world.starts[i];
       if (!body_walls.fits(start.position()))
         throw InputError(fmt::format("robot {} at ({:g}, {:g}): its start is in a wall or off the map (radius {:g} m)",
-                                     i + 1, start.x, start.y, radius));
-      if (apart(placed, start.position(), radius, 0.0)) pose = start;
+                                     i + 1, start.x, start.y, radii[i]));
+      if (apart(placed, start.position(), radii[i], 0.0)) pose = start;
     }
-    if (!pose) {
-      // A start that another robot holds is moved to the nearest free place; robots without one go to any of them.
-      const auto near = i < source_cells.size() ? std::vector<Cell>{source_cells[i]} : source_cells;
-      spread(body_walls, g, near, [&](Cell c, std::size_t source) {
-        const Point p = g.center(c);
-        if (!apart(placed, p, radius, kSpare)) return true;
-        pose = Pose2{p.x, p.y, sources[i < source_cells.size() ? i : source].theta};
-        return false;
-      });
-    }
+    if (!pose) pose = nearest_place(sources, i, body_walls, world.map.geometry(), placed);
     if (!pose)
-      throw InputError(
-          fmt::format("no room for robot {} of {} (radius {:g} m) near the start poses", i + 1, radii.size(), radius));
-    placed.push_back({*pose, radius});
+      throw InputError(fmt::format("no room for robot {} of {} (radius {:g} m) near the start poses", i + 1,
+                                   radii.size(), radii[i]));
+    placed.push_back({*pose, radii[i]});
   }
   std::vector<Pose2> poses;
   for (const Placed& robot : placed) poses.push_back(robot.pose);

@@ -91,8 +91,14 @@ CellSensor::CellSensor(const OccupancyGrid& truth, double range) : geometry_(tru
   const double range_cells = range / geometry_.resolution;
   const int farthest = std::max(geometry_.width, geometry_.height);
   margin_ = static_cast<int>(std::min(std::ceil(range_cells), static_cast<double>(farthest))) + 1;
-  const GridGeometry padded{.width = geometry_.width + 2 * margin_, .height = geometry_.height + 2 * margin_};
+  pad(truth);
+  const VisibilityTree tree(range_cells, farthest);
+  for (const VisibilityTree::Node& node : tree.nodes())
+    nodes_.push_back(compiled(node, tree.nodes()[static_cast<std::size_t>(node.parent)].offset, range_cells));
+}
 
+void CellSensor::pad(const OccupancyGrid& truth) {
+  const GridGeometry padded{.width = padded_width(), .height = geometry_.height + 2 * margin_};
   cells_.assign(padded.size(), kSolid);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const Cell c = geometry_.cell_at(i);
@@ -104,21 +110,19 @@ CellSensor::CellSensor(const OccupancyGrid& truth, double range) : geometry_(tru
         bits = static_cast<std::uint16_t>(bits | neighbour_bit(step));
     }
   }
+}
 
-  const VisibilityTree tree(range_cells, farthest);
-  for (const VisibilityTree::Node& from : tree.nodes()) {
-    const Cell at = from.offset, parent = tree.nodes()[static_cast<std::size_t>(from.parent)].offset;
-    Node node{at.y * padded.width + at.x, at.y * geometry_.width + at.x, from.end};
-    if (at.x != parent.x && at.y != parent.y)
-      node.squeeze =
-          static_cast<std::uint8_t>(neighbour_bit({parent.x - at.x, 0}) | neighbour_bit({0, parent.y - at.y}));
-    for (const Cell step : kNeighbours) {
-      const Cell beside{at.x + step.x, at.y + step.y};
-      if (std::abs(beside.x) >= std::abs(at.x) && std::abs(beside.y) >= std::abs(at.y) && within(beside, range_cells))
-        node.outward = static_cast<std::uint8_t>(node.outward | neighbour_bit(step));
-    }
-    nodes_.push_back(node);
+CellSensor::Node CellSensor::compiled(const VisibilityTree::Node& from, Cell parent, double range_cells) const {
+  const Cell at = from.offset;
+  Node node{at.y * padded_width() + at.x, at.y * geometry_.width + at.x, from.end};
+  if (at.x != parent.x && at.y != parent.y)
+    node.squeeze = static_cast<std::uint8_t>(neighbour_bit({parent.x - at.x, 0}) | neighbour_bit({0, parent.y - at.y}));
+  for (const Cell step : kNeighbours) {
+    const Cell beside{at.x + step.x, at.y + step.y};
+    if (std::abs(beside.x) >= std::abs(at.x) && std::abs(beside.y) >= std::abs(at.y) && within(beside, range_cells))
+      node.outward = static_cast<std::uint8_t>(node.outward | neighbour_bit(step));
   }
+  return node;
 }
 
 void CellSensor::sense(Cell from, std::vector<std::uint8_t>& seen, std::vector<SeenCell>& out) const {
@@ -129,9 +133,7 @@ void CellSensor::sense(Cell from, std::vector<std::uint8_t>& seen, std::vector<S
     out.push_back({static_cast<std::uint32_t>(i), state});
   };
   const auto here = static_cast<std::int64_t>(geometry_.index(from));
-  const std::uint16_t* center =
-      &cells_[static_cast<std::size_t>(from.y + margin_) * static_cast<std::size_t>(geometry_.width + 2 * margin_) +
-              static_cast<std::size_t>(from.x + margin_)];
+  const std::uint16_t* center = cells_.data() + std::int64_t{from.y + margin_} * padded_width() + from.x + margin_;
   for (std::size_t i = 0; i < nodes_.size();) {
     const Node& node = nodes_[i];
     const std::uint16_t cell = center[node.padded];

@@ -54,6 +54,10 @@ class CellSensor {
     std::uint8_t outward = 0;  ///< the neighbours, in range, whose faces this cell shows
   };
 
+  int padded_width() const { return geometry_.width + 2 * margin_; }
+  void pad(const OccupancyGrid& truth);
+  Node compiled(const VisibilityTree::Node& from, Cell parent, double range_cells) const;
+
   GridGeometry geometry_;
   int margin_ = 0;                    ///< solid cells added on all sides, so that no look-up needs a bounds check
   std::vector<std::uint16_t> cells_;  ///< padded map: kSolid, and one bit for each occupied neighbour

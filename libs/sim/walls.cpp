@@ -118,7 +118,8 @@ double Walls::first_contact(const Sweep& way, double length) const {
       begin = std::clamp(std::min(a, b), 0.0, length);
       stop = std::clamp(std::max(a, b), 0.0, length);
     }
-    const auto [left, right] = std::minmax(way.at(begin).x, way.at(stop).x);
+    const double xa = way.at(begin).x, xb = way.at(stop).x;
+    const double left = std::min(xa, xb), right = std::max(xa, xb);
     const int last_column = column(right + radius_);
     for (int x = column(left - radius_); x <= last_column; ++x)
       if (solid({x, y})) first = std::min(first, entry_into_grown_box(way, square({x, y}), radius));
