@@ -1,7 +1,8 @@
 // CARMEN's text logs. One message a line:
 //   FLASER n r_1..r_n  x y theta  odom_x odom_y odom_theta  ipc_time host logger_time
 //   ROBOTLASER1 type start fov resolution max accuracy remission_mode  n r_1..r_n  m i_1..i_m
-//               laser_x laser_y laser_theta  robot_x robot_y robot_theta  tv rv safety(2) turn  ipc_time host logger_time
+//               laser_x laser_y laser_theta  robot_x robot_y robot_theta  tv rv safety(2) turn  ipc_time host
+//               logger_time
 //   RAWLASER1 (as ROBOTLASER1 up to the intensities)  ipc_time host logger_time
 //   ODOM x y theta ...
 // A robot may log the same sweep under all three laser names; only one name is used.
@@ -26,16 +27,17 @@ constexpr std::array<std::string_view, kKinds> kNames = {"ROBOTLASER1", "FLASER"
 /// One laser message.
 struct Message {
   Kind kind = kFrontLaser;
-  LaserScan scan;                      ///< without time and pose on the robot
-  Pose2 laser, odometry;               ///< in one frame, unless the log is corrected
+  LaserScan scan;         ///< without time and pose on the robot
+  Pose2 laser, odometry;  ///< in one frame, unless the log is corrected
   double ipc_time = 0.0, logger_time = 0.0;
-  bool has_range_max = false;          ///< the message states the laser's limits itself
+  bool has_range_max = false;  ///< the message states the laser's limits itself
 };
 
 /// The words of a line, taken one by one.
 class Words {
  public:
-  Words(std::string_view line, const std::string& file, std::size_t number) : rest_(line), file_(file), number_(number) {}
+  Words(std::string_view line, const std::string& file, std::size_t number)
+      : rest_(line), file_(file), number_(number) {}
 
   bool empty() { return skip(), rest_.empty(); }
   std::string_view word(std::string_view expected) {
@@ -125,12 +127,14 @@ Message read_configured_laser(Words& words, Kind kind) {
   words.number("the accuracy");
   words.number("the remission mode");
   read_ranges(words, m.scan);
-  for (std::size_t i = words.count("a number of remissions", 0, kMostBeams); i > 0; --i) words.any_number("a remission");
+  for (std::size_t i = words.count("a number of remissions", 0, kMostBeams); i > 0; --i)
+    words.any_number("a remission");
   const auto intervals = static_cast<double>(m.scan.ranges.size() - 1);
   m.scan.angle_min = start;
   // The written resolution has few digits; the field of view tells it better, unless the two disagree (a cut scan).
   const double from_fov = intervals > 0 ? fov / intervals : 0.0;
-  m.scan.angle_increment = resolution > 0.0 && std::abs(from_fov - resolution) > 1e-3 * resolution ? resolution : from_fov;
+  m.scan.angle_increment =
+      resolution > 0.0 && std::abs(from_fov - resolution) > 1e-3 * resolution ? resolution : from_fov;
   if (!(std::abs(m.scan.angle_increment) * intervals < 2.1 * kPi)) words.fail("the beams span more than a turn");
   if (!(m.scan.range_max > 0.0)) words.fail("expected a maximum range above 0");
   if (kind == kRobotLaser) {
@@ -155,13 +159,17 @@ class Clock {
   }
   /// The time of the sensor (ipc) unless it stands still for most scans while the logger's runs on: simulators write
   /// whole seconds there, and the logger's milliseconds are then the finer clock.
-  double time(const Message& m) const {
-    if (2 * ipc_steps_ >= logger_steps_) return m.ipc_time;
-    const double span = last_ipc_ - first_ipc_, ratio = (last_logger_ - first_logger_) / span;
-    return m.logger_time * (span > 0.0 && ratio > 500.0 && ratio < 2000.0 ? 1e-3 : 1.0);
-  }
+  double time(const Message& m) const { return time(m.ipc_time, m.logger_time); }
+  double first() const { return time(first_ipc_, first_logger_); }
+  double last() const { return time(last_ipc_, last_logger_); }
 
  private:
+  double time(double ipc, double logger) const {
+    if (2 * ipc_steps_ >= logger_steps_) return ipc;
+    const double span = last_ipc_ - first_ipc_, ratio = (last_logger_ - first_logger_) / span;
+    return logger * (span > 0.0 && ratio > 500.0 && ratio < 2000.0 ? 1e-3 : 1.0);
+  }
+
   std::size_t scans_ = 0, ipc_steps_ = 0, logger_steps_ = 0;
   double first_ipc_ = 0.0, last_ipc_ = 0.0, first_logger_ = 0.0, last_logger_ = 0.0;
 };
@@ -197,31 +205,25 @@ class CarmenLog : public LogReader::Source {
     std::array<Clock, kKinds> clocks;
     std::array<Mounting, kKinds> mountings;
     bool odometry = false;
-    for_each_message([&](const Message& m) {
+    const auto on_scan = [&](const Message& m) {
       ++counts[m.kind];
       clocks[m.kind].see(m);
       mountings[m.kind].see(m);
       odometry = odometry || m.odometry != Pose2{};
       return true;
-    });
+    };
+    for_each_message(on_scan, [&](Words& words) { read_parameter(words); });
     // ROBOTLASER1 knows most; RAWLASER1 has no poses and serves only alone.
     kind_ = counts[kFrontLaser] > counts[kRobotLaser] ? kFrontLaser : counts[kRobotLaser] > 0 ? kRobotLaser : kRawLaser;
     clock_ = clocks[kind_];
     mounting_ = mountings[kind_];
     mounting_.set_parameter(laser_forward_.value_or(0.0));
-    LogInfo info{"carmen", counts[kind_], 0.0, 0.0, odometry};
-    bool first = true;
-    read([&](const LogEntry& e) {
-      if (std::exchange(first, false)) info.first_t = e.scan.t;
-      info.last_t = e.scan.t;
-      return true;
-    });
-    return info;
+    return {"carmen", counts[kind_], clock_.first(), clock_.last(), odometry};
   }
 
   void read(const std::function<bool(const LogEntry&)>& on_scan) const override {
     const Pose2 T_robot_sensor = mounting_.offset();
-    for_each_message([&](Message& m) {
+    const auto on_message = [&](Message& m) {
       if (m.kind != kind_) return true;
       LogEntry entry{std::move(m.scan), m.odometry, std::nullopt};
       entry.scan.t = clock_.time(m);
@@ -229,7 +231,8 @@ class CarmenLog : public LogReader::Source {
       entry.scan.range_max = usable_range(m, entry.scan);
       if (mounting_.corrected()) entry.logged_pose = m.laser * inverse(T_robot_sensor);
       return on_scan(entry);
-    });
+    };
+    for_each_message(on_message, [](Words&) {});
   }
 
  private:
@@ -240,15 +243,15 @@ class CarmenLog : public LogReader::Source {
     return stated > kSickLimit && stated < 83.0 ? kSickLimit : stated;
   }
 
-  void read_parameter(Words& words) const {
+  void read_parameter(Words& words) {
     const std::string_view key = words.empty() ? "" : words.word("a name");
     if (key == "robot_front_laser_max" || key == "robot_frontlaser_max") range_max_ = words.number("a range");
     if (key == "robot_frontlaser_offset") laser_forward_ = words.number("a distance");
   }
 
-  /// Visits every laser message; `visit` may take the scan away, and returns false to stop.
-  template <class Visit>
-  void for_each_message(Visit&& visit) const {
+  /// Visits every laser message, whose scan may be taken away, until `visit` returns false, and every parameter.
+  template <class Visit, class VisitParameter>
+  void for_each_message(Visit&& visit, VisitParameter&& on_parameter) const {
     GzipReader reader(file_);
     std::string line;
     Pose2 odometry;  // of the last ODOM, for RAWLASER1
@@ -258,7 +261,7 @@ class CarmenLog : public LogReader::Source {
       Words words(line, name_, reader.line_number());
       if (words.empty() || line.starts_with('#')) continue;
       const std::string_view name = words.word("a message name");
-      if (name == "PARAM") read_parameter(words);
+      if (name == "PARAM") on_parameter(words);
       if (name == "ODOM") odometry = words.pose("the robot's pose");
       const auto kind = static_cast<std::size_t>(std::find(kNames.begin(), kNames.end(), name) - kNames.begin());
       if (kind == kKinds) continue;
@@ -273,8 +276,7 @@ class CarmenLog : public LogReader::Source {
   Kind kind_ = kFrontLaser;
   Clock clock_;
   Mounting mounting_;
-  mutable std::optional<double> range_max_;      ///< PARAM lines come before the scans
-  mutable std::optional<double> laser_forward_;
+  std::optional<double> range_max_, laser_forward_;  ///< PARAMs, if any [m]
 };
 
 }  // namespace

@@ -1,0 +1,47 @@
+#pragma once
+// Internal: MRPT's two SLAM builders behind one interface, without MRPT's headers.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "slam_glue/logs.hpp"
+
+namespace outrider::slam_glue {
+
+/// Scans in, poses out.
+class Localizer {
+ public:
+  virtual ~Localizer() = default;
+  /// Scans in the order of the log.
+  virtual void add(const LogEntry& entry) = 0;
+  /// The final pose of every scan added, T_map_robot; the map frame is the robot's at the first scan.
+  virtual std::vector<Pose2> poses() const = 0;
+  /// Scans in the SLAM's own map so far.
+  virtual std::size_t keyframes() = 0;
+};
+
+struct IcpSettings {
+  double max_range_m = 30.0;
+  double locate_every_m = 0.1, locate_every_rad = 0.05;  ///< motion between two matches
+  double insert_every_m = 0.6, insert_every_rad = 0.5;   ///< motion between two keyframes
+  double least_goodness = 0.4;
+  unsigned max_iterations = 60;
+  double threshold_m = 0.5, threshold_rad = 0.05;  ///< points pair up to threshold_m + range * threshold_rad [m]
+  double smallest_threshold_m = 0.1;
+  double shrink = 0.6;            ///< of the thresholds, after each convergence
+  double point_spacing_m = 0.05;  ///< of the map
+  unsigned decimation = 3;        ///< of a scan's points when matched
+};
+std::unique_ptr<Localizer> make_icp(const IcpSettings& settings);
+
+struct RbpfSettings {
+  double max_range_m = 30.0;
+  int particles = 15;
+  std::uint64_t seed = 1;
+  double update_every_m = 0.5, update_every_rad = 0.35;  ///< motion between two updates of the filter
+};
+/// Seeds MRPT's random generator of the calling thread.
+std::unique_ptr<Localizer> make_rbpf(const RbpfSettings& settings);
+
+}  // namespace outrider::slam_glue
