@@ -29,14 +29,12 @@ LaserScan Lidar::scan(const OccupancyGrid& solid, const Pose2& T_map_robot, doub
   scan.angle_increment = beams_ == 1 ? 0.0 : fov_ / (full_turn ? beams_ : beams_ - 1);
   scan.range_max = range_;
   scan.ranges.resize(static_cast<std::size_t>(beams_));
-  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    double range = cast_ray(solid, T_map_robot.position(), T_map_robot.theta + scan.angle(i), range_).value_or(range_);
-    // Drawn for every beam, echo or not, so that the stream does not depend on the map.
-    if (noise_ > 0.0) {
-      const double error = noise_ * unit_(random_);
-      if (range < range_) range = std::clamp(range + error, 1e-3, range_);
-    }
-    scan.ranges[i] = static_cast<float>(range);
+  cast_scan(solid, T_map_robot.position(), T_map_robot.theta + scan.angle_min, scan.angle_increment, scan.ranges,
+            range_);
+  if (noise_ == 0.0) return scan;
+  for (float& range : scan.ranges) {
+    const double error = noise_ * unit_(random_);  // drawn for every beam: the stream does not depend on the map
+    if (range < range_) range = static_cast<float>(std::clamp(range + error, 1e-3, range_));
   }
   return scan;
 }

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "sim/world.hpp"
 #include "world/error.hpp"
@@ -60,6 +61,13 @@ class Reader {
     return value;
   }
 
+  int whole_number(std::string_view text) const {
+    const double value = number(text);
+    if (value != std::floor(value) || std::abs(value) > 1e6)
+      fail(fmt::format("expected a whole number, not '{}'", text));
+    return static_cast<int>(value);
+  }
+
   std::vector<double> numbers(std::string_view text, std::size_t count) const {
     std::vector<double> values;
     for (const std::string_view word : split(text, ' '))
@@ -93,23 +101,20 @@ class Reader {
 
   RobotSpec robot(std::string_view text) const {
     RobotSpec robot;
+    const std::array<std::pair<std::string_view, double*>, 4> fields{
+        {{"speed", &robot.speed}, {"range", &robot.range}, {"fov", &robot.fov}, {"radius", &robot.radius}}};
     for (const std::string_view word : split(text, ' ')) {
       if (word.empty()) continue;
       const auto equals = word.find('=');
       if (equals == std::string_view::npos) fail(fmt::format("expected key=value, not '{}'", word));
       const std::string_view key = word.substr(0, equals), value = word.substr(equals + 1);
+      const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.first == key; });
       if (key == "name")
         robot.name = value;
-      else if (key == "speed")
-        robot.speed = number(value);
-      else if (key == "range")
-        robot.range = number(value);
-      else if (key == "fov")
-        robot.fov = number(value);
       else if (key == "beams")
-        robot.beams = static_cast<int>(number(value));
-      else if (key == "radius")
-        robot.radius = number(value);
+        robot.beams = whole_number(value);
+      else if (field != fields.end())
+        *field->second = number(value);
       else
         fail(fmt::format("unknown key '{}'{}", key,
                          suggestion(key, {"beams", "fov", "name", "radius", "range", "speed"})));

@@ -136,6 +136,7 @@ std::vector<Pose2> spread_starts(const World& world, std::span<const double> rad
     placed.push_back({*pose, radii[i]});
   }
   std::vector<Pose2> poses;
+  poses.reserve(placed.size());
   for (const Placed& robot : placed) poses.push_back(robot.pose);
   return poses;
 }

@@ -165,6 +165,7 @@ TEST(ParseWorld, ErrorsNameTheLine) {
   EXPECT_EQ(error("resolution: 0\nmap:\n.\n"), "f.txt, line 3: resolution 0: expected a positive number of m");
   EXPECT_EQ(error("start: 1 2\nmap:\n.\n"), "f.txt, line 1: expected 3 numbers, found 2");
   EXPECT_EQ(error("robot: name=a\nmap:\n.\n"), "f.txt, line 1: there are more robots than starts");
+  EXPECT_EQ(error("robot: name=a beams=1.5\nmap:\n0\n"), "f.txt, line 1: expected a whole number, not '1.5'");
   EXPECT_EQ(error("robot: name=a colour=1\nmap:\n0\n").substr(0, 36), "f.txt, line 1: unknown key 'colour';");
 }
 
