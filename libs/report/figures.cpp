@@ -79,12 +79,6 @@ std::string left_over(const Json& result) {
   return fmt::format("{} place{}, {:.1f} m²", left->size(), left->size() == 1 ? "" : "s", m2);
 }
 
-std::string messages(const Json& result) {
-  const auto sent = number(result, {"messages", "sent"}), delivered = number(result, {"messages", "delivered"});
-  if (!sent) return "";
-  return delivered ? fmt::format("{:.0f} ({:.0f} delivered)", *sent, *delivered) : fmt::format("{:.0f}", *sent);
-}
-
 std::string interactions(const Json& result) {
   const auto count = number(result, {"interactions", "count"}), time = number(result, {"interactions", "time_s"});
   if (!count) return "";
@@ -134,11 +128,12 @@ const std::vector<std::pair<std::string, Value>>& catalogue() {
       {"path, whole team", path_figure(true)},
       {"path, longest", path_figure(false)},
       {"overlap", plain({"overlap", "fraction"}, "{:.1f} %", 100.0)},
-      {"sum of coverage over team's", plain({"overlap", "sum_cov_minus_cov_team"}, "{:+.3f}")},
+      {"Σ coverage − team's", plain({"overlap", "sum_cov_minus_cov_team"}, "{:+.3f}")},
       {"spread of shares (std)", plain({"workload_std"}, "{:.3f}")},
       {"trajectory crossings", plain({"trajectory_intersections"}, "{:.0f}")},
       {"interactions", interactions},
-      {"messages sent", messages},
+      {"messages sent", plain({"messages", "sent"}, "{:.0f}")},
+      {"messages delivered", plain({"messages", "delivered"}, "{:.0f}")},
       {"data sent", plain({"messages", "bytes"}, "{:.1f} kB", 1e-3)},
       {"map, IoU of walls", plain({"map_quality", "iou_occupied"}, "{:.3f}")},
       {"map, IoU of free space", plain({"map_quality", "iou_free"}, "{:.3f}")},

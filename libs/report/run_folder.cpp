@@ -120,16 +120,21 @@ void write_files(const RunRecord& record, const fs::path& dir) {
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view content) {
+  const fs::path staging = path.parent_path() / (kStagingPrefix + path.filename().string());
   const auto fail = [&](int error) {
+    std::error_code ignored;
+    fs::remove(staging, ignored);
     throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), std::strerror(error)));
   };
-  std::FILE* file = std::fopen(path.c_str(), "wb");
+  std::FILE* file = std::fopen(staging.c_str(), "wb");
   if (file == nullptr) fail(errno);
-  errno = 0;
   const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size() && std::fflush(file) == 0;
   const int write_error = errno;
   const bool closed = std::fclose(file) == 0;  // a network disk may report being full only now
   if (!written || !closed) fail(written ? errno : write_error);
+  std::error_code error;
+  fs::rename(staging, path, error);
+  if (error) fail(error.value());
 }
 
 void check_out_dir(const fs::path& dir, bool force) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/run_record.hpp"
@@ -42,7 +43,8 @@ struct RunSummary {
 /// is no run of schema 1, or is broken.
 RunSummary load_run(const std::filesystem::path& dir);
 
-/// Writes a file and checks that all of it arrived. Throws std::runtime_error with path and reason.
+/// Writes a file whole or not at all: beside its place as `.partial-NAME`, then renamed. Throws std::runtime_error with
+/// path and reason.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace outrider::report

@@ -1,11 +1,12 @@
 "use strict";
-// What the pages share: colours that colour-blind readers can tell apart (Okabe and Ito), chart defaults, a time cursor.
+// What the pages share: colours that colour-blind readers can tell apart, chart defaults, a time cursor.
 
-const kPalette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7b5aa6", "#8a8a8a"];
+const kTones = 8;  // --tone-0 ... in page.css: Okabe and Ito's, lighter on dark paper
 const kDashes = [[], [7, 3], [2, 3]];
-const colourOf = (i) => kPalette[i % kPalette.length];
-const dashOf = (i) => kDashes[Math.floor(i / kPalette.length) % kDashes.length];
+const toneOf = (i) => `--tone-${i % kTones}`;
+const dashOf = (i) => kDashes[Math.floor(i / kTones) % kDashes.length];
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const colourOf = (i) => css(toneOf(i));
 const byId = (id) => document.getElementById(id);
 const pageData = () => JSON.parse(byId("data").textContent);
 
@@ -27,7 +28,10 @@ function applyTheme() {
       scale.ticks.color = scale.title.color = css("--muted");
     }
     chart.options.plugins.legend.labels.color = css("--muted");
-    for (const set of chart.data.datasets) if (set.ink) set.borderColor = css("--ink");
+    for (const set of chart.data.datasets) {
+      if (Array.isArray(set.tones)) set.backgroundColor = set.tones.map(css);
+      else set.borderColor = css(set.tones);
+    }
     chart.update("none");
   }
 }
@@ -56,7 +60,7 @@ function addChart(canvas, config) {
   return chart;
 }
 
-/** Curves over time. series: [{label, t, y, colour ("" = ink), width, dash}]; onSeek(time) is called on a click. */
+/** Curves over time. series: [{label, t, y, tone (a CSS variable), width, dash}]; onSeek(time) is called on a click. */
 function curveChart(canvas, series, yTitle, onSeek) {
   const cursor = {
     id: "cursor",
@@ -81,8 +85,8 @@ function curveChart(canvas, series, yTitle, onSeek) {
       datasets: series.map((s) => ({
         label: s.label,
         data: s.t.map((t, i) => ({ x: t, y: s.y[i] })),
-        borderColor: s.colour || css("--ink"),
-        ink: !s.colour,
+        borderColor: css(s.tone),
+        tones: s.tone,
         borderWidth: s.width,
         borderDash: s.dash || [],
         pointRadius: 0,
@@ -95,7 +99,7 @@ function curveChart(canvas, series, yTitle, onSeek) {
       interaction: { mode: "nearest", axis: "x", intersect: false },
       onClick: (event, _, c) => onSeek && onSeek(c.scales.x.getValueForPixel(event.x)),
       scales: {
-        x: axis("time [s]", { type: "linear", min: 0, max: last || 1, grid: { display: false } }),
+        x: axis("time [s]", { type: "linear", min: 0, max: last || 1, grid: { display: false }, ticks: { includeBounds: false } }),
         y: axis(yTitle, { min: 0, suggestedMax: 1, ticks: { callback: (v) => Math.round(100 * v) + " %" } }),
       },
       plugins: {
@@ -118,17 +122,17 @@ function curveChart(canvas, series, yTitle, onSeek) {
   };
 }
 
-/** Horizontal bars. unit(value) makes the label of a value. */
-function barChart(canvas, labels, values, colours, unit) {
-  canvas.parentElement.style.height = `${Math.max(120, 46 + 26 * labels.length)}px`;
+/** Horizontal bars. unit(value) makes the label of a value, tick(value) that of the axis. */
+function barChart(canvas, labels, values, tones, unit, tick = unit) {
+  canvas.parentElement.style.height = `${Math.max(120, 46 + (labels.length > 16 ? 17 : 26) * labels.length)}px`;
   addChart(canvas, {
     type: "bar",
-    data: { labels, datasets: [{ data: values, backgroundColor: colours, maxBarThickness: 16 }] },
+    data: { labels, datasets: [{ data: values, backgroundColor: tones.map(css), tones, maxBarThickness: 16 }] },
     options: {
       indexAxis: "y",
       layout: { padding: { right: 52 } },
       scales: {
-        x: axis("", { beginAtZero: true, ticks: { callback: (v) => unit(v), maxTicksLimit: 5 } }),
+        x: axis("", { beginAtZero: true, ticks: { callback: (v) => tick(v), maxTicksLimit: 5 } }),
         y: axis("", { grid: { display: false }, ticks: { autoSkip: false } }),
       },
       plugins: {

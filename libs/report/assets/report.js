@@ -143,7 +143,7 @@ class MapView {
       e.preventDefault();
       this.zoom(Math.exp(-0.002 * e.deltaY), e.offsetX, e.offsetY);
     }, { passive: false });
-    new ResizeObserver(() => { this.fit(); this.draw(); }).observe(this.canvas.parentElement);
+    new ResizeObserver(() => requestAnimationFrame(() => { this.fit(); this.draw(); })).observe(this.canvas.parentElement);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
@@ -171,11 +171,11 @@ class MapView {
     c.fillStyle = css("--map-unknown");
     c.fillRect(0, 0, width, height);
     if (this.image) this.drawMap(c);
+    this.drawScaleBar(c, width, height);
     c.lineJoin = c.lineCap = "round";
     this.drawLeft(c);
     this.data.robots.forEach((robot, i) => this.hidden.has(i) || this.drawPath(c, robot, i));
     this.data.robots.forEach((robot, i) => this.hidden.has(i) || this.drawRobot(c, robot, i));
-    this.drawScaleBar(c, width, height);
   }
 
   drawMap(c) {
@@ -308,7 +308,8 @@ class Player {
     Object.assign(byId("time"), { max: duration, value: duration });
     byId("time").addEventListener("input", () => { this.stop(); this.seek(+byId("time").value); });
     byId("play").addEventListener("click", () => (this.playing ? this.stop() : this.start()));
-    this.seek(duration);
+    const linked = /[#&]t=([\d.]+)/.exec(location.hash);  // report.html#t=60 opens at that time
+    this.seek(linked ? +linked[1] : duration);
   }
 
   seek(time) {
@@ -342,7 +343,7 @@ class Player {
 }
 
 const point = (p) => (Array.isArray(p) && p.length === 2 ? `(${p[0].toFixed(1)}, ${p[1].toFixed(1)})` : "");
-const plain = (v) => (typeof v === "string" ? v : JSON.stringify(v));
+const plain = (v) => (typeof v === "string" ? v : JSON.stringify(v, (_, n) => (typeof n === "number" ? +n.toFixed(3) : n)));
 
 /** One line of words for an event. */
 function summary(event) {
@@ -414,11 +415,11 @@ class EventTable {
 }
 
 /** A button that is on or off. */
-function toggle(label, on, change, colour) {
+function toggle(label, on, change, tone) {
   const button = element("button", { type: "button" });
-  if (colour) {
+  if (tone) {
     const swatch = element("span", { className: "swatch" });
-    swatch.style.background = colour;
+    swatch.style.background = `var(${tone})`;
     button.append(swatch);
   }
   button.append(label);
@@ -433,28 +434,30 @@ function toggle(label, on, change, colour) {
 
 function drawCharts(data, seek) {
   const names = data.robots.map((r) => r.name);
-  const colours = names.map((_, i) => colourOf(i));
+  const tones = names.map((_, i) => toneOf(i));
   const { t, fraction, m2, robots } = data.timeline;
   byId("coverage-figure").hidden = t.length === 0;
   const last = t.length - 1;
   const whole = fraction[last] > 0 ? m2[last] / fraction[last] : m2[last] || 1;
-  const team = { label: "team", t, y: fraction, colour: "", width: 2.4 };
+  const team = { label: "team", t, y: fraction, tone: "--ink", width: 2.4 };
   const each = names.length > 1 && names.length <= 12 ? robots.map((own, i) => ({
-    label: names[i], t, y: own.map((v) => v / whole), colour: colours[i], width: 1.4, dash: dashOf(i),
+    label: names[i], t, y: own.map((v) => v / whole), tone: tones[i], width: 1.4, dash: dashOf(i),
   })).filter((s) => s.y.length > 0) : [];
+  byId("each-robot").hidden = each.length === 0;
   const curve = t.length ? curveChart(byId("coverage"), [team, ...each], "explored", seek) : { setTime() {} };
-  const bars = (id, values, unit) => {
+  const percent = (digits) => (v) => `${(100 * v).toFixed(digits)} %`;
+  const bars = (id, values, unit, tick) => {
     byId(`${id}-figure`).hidden = !values;
-    if (values) barChart(byId(id), names, names.map((n) => values[n] || 0), colours, unit);
+    if (values) barChart(byId(id), names, names.map((n) => values[n] || 0), tones, unit, tick);
   };
-  bars("share", data.share, (v) => `${(100 * v).toFixed(v < 0.1 ? 1 : 0)} %`);
-  bars("path", data.path_m, (v) => `${v.toFixed(v < 10 ? 1 : 0)} m`);
+  bars("share", data.share, percent(1), percent(0));
+  bars("path", data.path_m, (v) => `${v.toFixed(1)} m`, (v) => `${v} m`);
   const seen = data.overlap && data.overlap.seen_m2;
   byId("overlap-figure").hidden = !seen || names.length < 2;
   if (seen && names.length > 1) {
     const sum = Object.values(seen).reduce((a, b) => a + b, 0) || 1;
     barChart(byId("overlap"), ["one robot", "two", "three or more"], Object.values(seen).map((v) => v / sum),
-      [mixed(css("--muted"), css("--paper"), 0.4), "#f2cd7e", "#e69f00"], (v) => `${(100 * v).toFixed(1)} %`);
+      ["--seen-1", "--seen-2", "--seen-3"], percent(1), percent(0));
   }
   return curve;
 }
@@ -486,7 +489,7 @@ async function loadImage(map) {
 function addTools(view, data) {
   const redraw = (change) => (on) => { change(on); view.draw(); };
   byId("robots").append(...data.robots.map((robot, i) =>
-    toggle(robot.name, true, redraw((on) => (on ? view.hidden.delete(i) : view.hidden.add(i))), colourOf(i))));
+    toggle(robot.name, true, redraw((on) => (on ? view.hidden.delete(i) : view.hidden.add(i))), toneOf(i))));
   const layers = view.image ? view.image.layers : {};
   const option = (label, key) => toggle(label, false, redraw((on) => (view.show[key] = on)));
   byId("toggles").append(option("sensing range", "ranges"), ...(layers.seen ? [option("overlap", "overlap")] : []),
