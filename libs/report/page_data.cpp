@@ -16,6 +16,7 @@ constexpr std::size_t kMaxPoints = 60'000;
 constexpr std::size_t kMinPointsPerRobot = 200;
 constexpr std::size_t kMaxRows = 1'000;
 constexpr std::size_t kMaxEvents = 20'000;
+constexpr std::size_t kMaxEventBytes = 16'000'000;  // before compression
 
 /// To so many parts of one; dividing last leaves the shortest decimal.
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
@@ -102,13 +103,16 @@ Json map_json(const RunRecord& record) {
   return map;
 }
 
-std::string packed_events(const RunRecord& record) {
+Json events_json(const RunRecord& record) {
   std::string lines;
-  for (std::size_t i = 0; i < std::min(record.events.size(), kMaxEvents); ++i) {
-    if (i > 0) lines += '\n';
-    lines += to_text(record.events[i]);
+  std::size_t shown = 0;
+  for (; shown < std::min(record.events.size(), kMaxEvents) && lines.size() < kMaxEventBytes; ++shown) {
+    if (shown > 0) lines += '\n';
+    lines += to_text(record.events[shown]);
   }
-  return packed({reinterpret_cast<const std::uint8_t*>(lines.data()), lines.size()});
+  return {{"total", record.events.size()},
+          {"shown", shown},
+          {"packed", packed({reinterpret_cast<const std::uint8_t*>(lines.data()), lines.size()})}};
 }
 
 }  // namespace
@@ -147,10 +151,7 @@ Json page_data(const RunRecord& record, const Json& result) {
   Json data{{"t0", time_zero(record)},
             {"robots", robots_json(record)},
             {"timeline", timeline_json(record)},
-            {"events",
-             {{"total", record.events.size()},
-              {"shown", std::min(record.events.size(), kMaxEvents)},
-              {"packed", packed_events(record)}}}};
+            {"events", events_json(record)}};
   if (record.map.size() > 0) data["map"] = map_json(record);
   for (const char* key : {"path_m", "share", "overlap", "left"})
     if (result.contains(key)) data[key] = result[key];
