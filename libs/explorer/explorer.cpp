@@ -157,7 +157,7 @@ void Explorer::run_coordinator(double now_s) {
     period_begin_s_ = now_s;
   }
   const std::function<std::vector<BidEntry>(const TaskGrain&)> tasks = [this](const TaskGrain& grain) {
-    return board_.entries(map_.states(), passable_, here(), grain);
+    return board_.entries(map_.states(), passable_, base(), grain);
   };
   const bool needs_task = !task_ && phase_ == Phase::kExploring &&
                           (map_news_s_ > refused_s_ || now_s >= refused_s_ + kAskAgain);

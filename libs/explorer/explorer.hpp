@@ -104,6 +104,7 @@ class Explorer {
   std::vector<decision::Neighbour> neighbours() const;
   int base_priority() const;
   Cell here() const { return map_.states().geometry().cell_of(pose_.position()); }
+  Cell base() const;
   bool safe_straight(Point from, Point to) const;
 
   RobotId self_;

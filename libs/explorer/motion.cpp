@@ -16,6 +16,12 @@ constexpr double kWorthDetour = 4.0;     // [m] a detour may always cost this mu
 constexpr double kNearby = 10.0;         // [m] team-mates farther away do not matter
 constexpr int kIdlePriority = 1000;
 
+constexpr double kTouch = 1e-9;          // [m]
+
+double distance_to_square(Point p, Point center, double half) {
+  return std::hypot(std::max(std::abs(p.x - center.x) - half, 0.0), std::max(std::abs(p.y - center.y) - half, 0.0));
+}
+
 double length(const std::vector<Cell>& way, double resolution) {
   double cells = 0.0;
   for (std::size_t k = 1; k < way.size(); ++k) cells += std::hypot(way[k].x - way[k - 1].x, way[k].y - way[k - 1].y);
@@ -29,16 +35,16 @@ int Explorer::base_priority() const {
 }
 
 bool Explorer::plan(Cell stand) {
-  std::vector<Cell> way = board_.path_to(passable_.mask(), here(), stand);
+  std::vector<Cell> way = board_.path_to(passable_.mask(), base(), stand);
   if (way.empty()) return false;
   drive(std::move(way));
   return true;
 }
 
-/// No occupied cell is nearer than the radius to the straight way: exact, on the cells around it.
+/// No occupied cell's square is nearer than the radius to the straight way: exact, on the cells around it.
 bool Explorer::safe_straight(Point from, Point to) const {
   const auto& g = map_.states().geometry();
-  const double r = spec_.radius;
+  const double r = spec_.radius - kTouch, half = g.resolution / 2.0;
   const Cell lo = g.cell_of({std::min(from.x, to.x) - r, std::min(from.y, to.y) - r});
   const Cell hi = g.cell_of({std::max(from.x, to.x) + r, std::max(from.y, to.y) + r});
   for (int y = lo.y; y <= hi.y; ++y)
@@ -46,10 +52,31 @@ bool Explorer::safe_straight(Point from, Point to) const {
       if (!g.contains({x, y})) return false;
       if (map_.states()[Cell{x, y}] != CellState::kOccupied) continue;
       const Point c = g.center({x, y});
-      // The square's corner region is within half a diagonal of its centre.
-      if (decision::distance_to_segment(c, from, to) < r + g.resolution * std::numbers::sqrt2 / 2.0) return false;
+      // The segment and the square are convex: they are nearest at an end of the one or a corner of the other, unless
+      // the segment crosses the square; then its distance from the centre is less than half an edge.
+      double gap = std::min(distance_to_square(from, c, half), distance_to_square(to, c, half));
+      for (const double sx : {-half, half})
+        for (const double sy : {-half, half})
+          gap = std::min(gap, decision::distance_to_segment({c.x + sx, c.y + sy}, from, to));
+      if (gap < r || decision::distance_to_segment(c, from, to) < half) return false;
     }
   return true;
+}
+
+/// The cell that planning starts from: passable, and its centre can be reached in a straight line. Usually the cell
+/// the robot is in, but a robot between two centres may be in a third one whose centre it cannot visit.
+Cell Explorer::base() const {
+  const auto& g = map_.states().geometry();
+  const Cell at = here();
+  std::optional<Cell> best;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const Cell c{at.x + dx, at.y + dy};
+      if (!g.contains(c) || !passable_.passable(c) || !safe_straight(pose_.position(), g.center(c))) continue;
+      if (!best || distance(g.center(c), pose_.position()) < distance(g.center(*best), pose_.position()) - kTouch)
+        best = c;
+    }
+  return best.value_or(at);
 }
 
 void Explorer::drive(std::vector<Cell> way) {
@@ -118,7 +145,7 @@ void Explorer::give_way(double now_s) {
   }
   for (const auto& n : around) {
     if (n.asks != self_ || n.priority >= priority_) continue;
-    const auto room = traffic_.make_room(passable_.mask(), here(), n, around);
+    const auto room = traffic_.make_room(passable_.mask(), base(), n, around);
     if (!room) continue;
     making_room_for_ = n.robot;
     making_room_until_s_ = now_s + kRoomTimeout;
@@ -144,19 +171,19 @@ void Explorer::resolve_block(double now_s) {
   last_try_s_ = now_s;
   trim_way();
   if (way_.empty()) return;
-  const auto around = neighbours();
-  const double resolution = map_.states().geometry().resolution;
-  if (const auto way = traffic_.detour(passable_.mask(), here(), way_.back(), around);
-      way && length(*way, resolution) <= 2.0 * length(way_, resolution) + kWorthDetour) {
-    if (!making_room_for_) asks_.reset();
-    drive(*way);
-    return;
-  }
   if (now_s > blocked_since_s_ + kGiveUp && !making_room_for_) {
     blocked_since_s_ = -1.0;
     asks_.reset();
     if (task_) end_task("blocked", now_s);
     stop();
+    return;
+  }
+  const auto around = neighbours();
+  const double resolution = map_.states().geometry().resolution;
+  if (const auto way = traffic_.detour(passable_.mask(), base(), way_.back(), around);
+      way && length(*way, resolution) <= 2.0 * length(way_, resolution) + kWorthDetour) {
+    if (!making_room_for_) asks_.reset();
+    drive(*way);
     return;
   }
   const auto* first = traffic_.in_the_way(way_, around, kNearby);
