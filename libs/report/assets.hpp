@@ -9,6 +9,7 @@ std::string_view report_template();      ///< assets/report.html
 std::string_view comparison_template();  ///< assets/comparison.html
 std::string_view style_sheet();          ///< assets/page.css
 std::string_view report_script();        ///< assets/report.js
+std::string_view map_script();           ///< assets/map_view.js
 std::string_view comparison_script();    ///< assets/comparison.js
 std::string_view chart_script();         ///< assets/charts.js: what both pages share
 std::string_view chart_library();        ///< Debian's chart.min.js (package libjs-chart.js)

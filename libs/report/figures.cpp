@@ -182,7 +182,9 @@ std::string verdict(const Json& run) {
     if (const auto area = number(result, {"explored_m2"})) words += fmt::format(" mapped {:.1f} m²", *area);
     return words + ".";
   }
-  std::string words = counted_robots(run) + " explored " + explored(result);
+  const std::string area = explored(result);
+  if (area.empty()) return counted_robots(run) + "; nothing is known of what was explored.";
+  std::string words = counted_robots(run) + " explored " + area;
   if (const auto time = number(result, {"time_s"})) words += fmt::format(" in {:.1f} s", *time);
   const std::string status = text(result, {"status"});
   if (status == "explored" || status.empty()) return words + ".";

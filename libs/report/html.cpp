@@ -30,9 +30,11 @@ std::string figures_html(const Json& run) {
   return rows;
 }
 
+/// The section on what was left; nothing for runs that do not explore.
 std::string left_html(const Json& result) {
-  if (!result.contains("left") || !result["left"].is_array() || result["left"].empty())
-    return "<p>Nothing that is known of.</p>";
+  if (!result.contains("left") || !result["left"].is_array()) return "";
+  const std::string heading = "<section>\n<h2>What is left, and why</h2>\n";
+  if (result["left"].empty()) return heading + "<p>Nothing that is known of.</p>\n</section>\n";
   std::string rows;
   for (const Json& place : result["left"]) {
     const Json at = place.value("frontier", Json());
@@ -43,9 +45,10 @@ std::string left_html(const Json& result) {
                         area.is_number() ? fmt::format("{:.2f}", area.get<double>()) : "",
                         escape_html(plain_text(place.value("why", Json("")))));
   }
-  return "<table class=\"list\"><thead><tr><th>frontier at</th><th class=\"number\">m² behind it</th><th>why</th></tr>"
+  return heading +
+         "<table class=\"list\"><thead><tr><th>frontier at</th><th class=\"number\">m² behind it</th><th>why</th></tr>"
          "</thead><tbody>\n" +
-         rows + "</tbody></table>";
+         rows + "</tbody></table>\n</section>\n";
 }
 
 /// Nested keys as "a.b"; lists on one line.
@@ -158,6 +161,7 @@ std::string report_html(const RunRecord& record) {
                                            {"data", script_json(page_data(record, run["result"]))},
                                            {"chart_library", std::string(chart_library())},
                                            {"chart_script", std::string(chart_script())},
+                                           {"map_script", std::string(map_script())},
                                            {"script", std::string(report_script())}});
 }
 
