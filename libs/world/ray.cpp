@@ -79,9 +79,10 @@ void skip_free(RayWalk& walk, const OccupancyGrid& map, double range) {
   walk.t = ray.t + (skipped - 1) * ray.per_lane;
   (along_x ? walk.t_x : walk.t_y) = ray.t + skipped * ray.per_lane;
   (along_x ? walk.cell.x : walk.cell.y) += ray.step * skipped;
-  if (row == 0) return;
-  (along_x ? walk.t_y : walk.t_x) = ray.row_t + static_cast<double>(std::abs(row)) * ray.per_row;
   (along_x ? walk.cell.y : walk.cell.x) += static_cast<int>(row);
+  // Not before the ray entered the lane: along an edge it may have crossed by less than the hair.
+  const double next_row_t = row == 0 ? ray.row_t : ray.row_t + static_cast<double>(std::abs(row)) * ray.per_row;
+  (along_x ? walk.t_y : walk.t_x) = std::max(next_row_t, walk.t);
 }
 
 /// Distance to the first occupied cell, or `none`.
