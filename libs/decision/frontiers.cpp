@@ -29,6 +29,8 @@ void flag_frontier(const std::uint8_t* __restrict row, const std::uint8_t* __res
   }
 }
 
+constexpr std::uint64_t kAllFlags = 0x0101010101010101;
+
 }  // namespace
 
 bool is_frontier(const OccupancyGrid& map, Cell c) {
@@ -55,7 +57,7 @@ void FrontierExtractor::detect(const OccupancyGrid& map) {
   const auto width = static_cast<std::size_t>(map.width());
   const auto* states = reinterpret_cast<const std::uint8_t*>(map.data().data());
   lowest_.assign(width + 2, static_cast<std::uint8_t>(CellState::kFree));  // the columns beside the map count as known
-  flags_.assign(width + sizeof(std::uint64_t), 0);                         // zeros end the last run of a row
+  flags_.assign(width + 2 * sizeof(std::uint64_t), 0);                     // zeros end the last run of a row
   std::size_t first_above = 0;
   for (int y = 0; y < map.height(); ++y) {
     const std::uint8_t* row = states + static_cast<std::size_t>(y) * width;
@@ -78,9 +80,15 @@ void FrontierExtractor::collect_runs(int y, int width) {
       x += 8;
       continue;
     }
-    x += std::countr_zero(eight) / 8;
-    const int begin = x;
-    while (flags_[static_cast<std::size_t>(x)] != 0) ++x;
+    const int begin = x + std::countr_zero(eight) / 8;
+    // The first zero byte after `begin`, eight at a time; the row ends in zeros.
+    for (x = begin;; x += 8) {
+      std::memcpy(&eight, flags_.data() + x, sizeof eight);
+      const std::uint64_t gaps = eight ^ kAllFlags;
+      if (gaps == 0) continue;
+      x += std::countr_zero(gaps) / 8;
+      break;
+    }
     runs_.push_back({y, begin, x, static_cast<std::uint32_t>(runs_.size())});
   }
 }
@@ -128,6 +136,7 @@ void FrontierExtractor::describe_clusters(const GridGeometry& g) {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     FrontierCluster& cluster = result_.clusters[i];
     const double n = cluster.end;
+    sums_[i].left = static_cast<int>(sums_[i].x / cluster.end);
     const Point mean{static_cast<double>(sums_[i].x) / n, static_cast<double>(sums_[i].y) / n};
     cluster.centroid = {g.origin.x + (mean.x + 0.5) * g.resolution, g.origin.y + (mean.y + 0.5) * g.resolution};
     cluster.begin = begin;
@@ -151,8 +160,7 @@ void FrontierExtractor::find_medoids() {
     FrontierCluster& cluster = result_.clusters[run.parent];
     Sums& sums = sums_[run.parent];
     const auto n = static_cast<std::int64_t>(cluster.size());
-    const auto left = static_cast<int>(sums.x / n);
-    for (const int column : {left, left + 1}) {
+    for (const int column : {sums.left, sums.left + 1}) {
       const int x = std::clamp(column, run.begin, run.end - 1);
       const auto dx = static_cast<double>(n * x - sums.x), dy = static_cast<double>(n * run.y - sums.y);
       const double d = dx * dx + dy * dy;

@@ -40,6 +40,7 @@ class FrontierExtractor {
   };
   struct Sums {
     std::int64_t x = 0, y = 0;  // of the members' coordinates, exact
+    int left = 0;               // column of the centroid, rounded down
     double best = 0.0;          // squared distance of the medoid so far
   };
 
