@@ -65,7 +65,8 @@ void expand(std::span<const std::uint32_t> now, std::size_t stride, std::uint32_
             std::uint32_t diagonal_level, Lowering<D>& edges, Lowering<D>& diagonals) {
   const D* levels = edges.levels;
   for (const std::size_t c : now) {
-    if (levels[c] != level) continue;  // a shorter way was found since
+    // Was a shorter way found since? Not where all steps are equal.
+    if (kSteps == Steps::kOctile && levels[c] != level) continue;
     const std::size_t up = c + stride, down = c - stride;
     const bool e = levels[c + 1] != kBlocked, w = levels[c - 1] != kBlocked;
     const bool n = levels[up] != kBlocked, s = levels[down] != kBlocked;

@@ -6,9 +6,9 @@
 #include <functional>
 #include <queue>
 
-#include "bench/maps.hpp"
 #include "decision/distance_field.hpp"
 #include "decision/passability.hpp"
+#include "maps.hpp"
 
 namespace outrider {
 namespace {

@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "bench/maps.hpp"
 #include "decision/frontiers.hpp"
+#include "maps.hpp"
 
 namespace outrider {
 namespace {

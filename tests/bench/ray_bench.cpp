@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "bench/maps.hpp"
+#include "maps.hpp"
 
 namespace outrider {
 namespace {
