@@ -106,6 +106,7 @@ class Explorer {
   Cell here() const { return map_.states().geometry().cell_of(pose_.position()); }
   Cell base() const;
   bool safe_straight(Point from, Point to) const;
+  bool clear_of_team(Point from, Point to) const;
 
   RobotId self_;
   RobotSpec spec_;

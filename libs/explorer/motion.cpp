@@ -9,6 +9,7 @@ namespace outrider::explorer {
 namespace {
 
 constexpr double kPatience = 0.3;        // [s] blocked before anything is done about it
+constexpr double kStuck = 3.0;           // [s] blocked before detours are given up and room is asked for
 constexpr double kTryAgain = 0.5;        // [s] between attempts
 constexpr double kGiveUp = 15.0;         // [s] blocked before the task is given back
 constexpr double kRoomTimeout = 8.0;     // [s] that room is made for somebody
@@ -63,18 +64,32 @@ bool Explorer::safe_straight(Point from, Point to) const {
   return true;
 }
 
+/// No team-mate in view is touched on the straight way, unless it is as near already and the way leads off.
+bool Explorer::clear_of_team(Point from, Point to) const {
+  return std::all_of(sightings_.begin(), sightings_.end(), [&](const Sighting& mate) {
+    const double gap = decision::distance_to_segment(mate.position, from, to);
+    return gap >= spec_.radius + mate.radius - kTouch || gap >= distance(mate.position, from) - kTouch;
+  });
+}
+
 /// The cell that planning starts from: passable, and its centre can be reached in a straight line. Usually the cell
-/// the robot is in, but a robot between two centres may be in a third one whose centre it cannot visit.
+/// the robot is in, but a robot between two centres may be in a third one whose centre it cannot visit, and pressed
+/// against a team-mate it has to begin on the other side.
 Cell Explorer::base() const {
   const auto& g = map_.states().geometry();
   const Cell at = here();
   std::optional<Cell> best;
+  bool best_clear = false;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const Cell c{at.x + dx, at.y + dy};
       if (!g.contains(c) || !passable_.passable(c) || !safe_straight(pose_.position(), g.center(c))) continue;
-      if (!best || distance(g.center(c), pose_.position()) < distance(g.center(*best), pose_.position()) - kTouch)
-        best = c;
+      const bool clear = clear_of_team(pose_.position(), g.center(c));
+      const bool nearer =
+          !best || distance(g.center(c), pose_.position()) < distance(g.center(*best), pose_.position()) - kTouch;
+      if (clear == best_clear ? !nearer : !clear) continue;
+      best = c;
+      best_clear = clear;
     }
   return best.value_or(at);
 }
@@ -86,7 +101,8 @@ void Explorer::drive(std::vector<Cell> way) {
   points.reserve(way_.size());
   for (const Cell c : way_) points.push_back(g.center(c));
   // Between two cells, do not turn back to the first one's centre when the second can be reached directly.
-  if (points.size() > 1 && safe_straight(pose_.position(), points[1])) points.erase(points.begin());
+  if (points.size() > 1 && safe_straight(pose_.position(), points[1]) && clear_of_team(pose_.position(), points[1]))
+    points.erase(points.begin());
   body_.follow(points);
   arrived_ = false;
   status_news_ = true;
@@ -180,7 +196,8 @@ void Explorer::resolve_block(double now_s) {
   }
   const auto around = neighbours();
   const double resolution = map_.states().geometry().resolution;
-  if (const auto way = traffic_.detour(passable_.mask(), base(), way_.back(), around);
+  const bool stuck = now_s > blocked_since_s_ + kStuck;  // a detour did not help
+  if (const auto way = stuck ? std::nullopt : traffic_.detour(passable_.mask(), base(), way_.back(), around);
       way && length(*way, resolution) <= 2.0 * length(way_, resolution) + kWorthDetour) {
     if (!making_room_for_) asks_.reset();
     drive(*way);
