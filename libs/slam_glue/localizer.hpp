@@ -21,17 +21,19 @@ class Localizer {
   virtual std::size_t keyframes() = 0;
 };
 
+/// Each keyframe makes MRPT rebuild the search tree of its map, so keyframes are few and the map thin: with 2.5 times
+/// the points CSAIL is no more accurate, but takes 3 times as long.
 struct IcpSettings {
   double max_range_m = 30.0;
-  double locate_every_m = 0.1, locate_every_rad = 0.05;  ///< motion between two matches
-  double insert_every_m = 0.6, insert_every_rad = 0.5;   ///< motion between two keyframes
-  double least_goodness = 0.4;
-  unsigned max_iterations = 60;
-  double threshold_m = 0.5, threshold_rad = 0.05;  ///< points pair up to threshold_m + range * threshold_rad [m]
+  double locate_every_m = 0.15, locate_every_rad = 0.1;  ///< motion between two matches
+  double insert_every_m = 1.2, insert_every_rad = 1.2;   ///< motion between two keyframes
+  double least_goodness = 0.25;
+  unsigned max_iterations = 40;
+  double threshold_m = 0.4, threshold_rad = 0.05;  ///< points pair up to threshold_m + range * threshold_rad [m]
   double smallest_threshold_m = 0.1;
-  double shrink = 0.6;            ///< of the thresholds, after each convergence
-  double point_spacing_m = 0.05;  ///< of the map
-  unsigned decimation = 3;        ///< of a scan's points when matched
+  double shrink = 0.5;           ///< of the thresholds, after each convergence
+  double point_spacing_m = 0.1;  ///< of the map
+  unsigned decimation = 3;       ///< of a scan's points when matched
 };
 std::unique_ptr<Localizer> make_icp(const IcpSettings& settings);
 

@@ -7,6 +7,7 @@
 
 #include "slam_glue/localizer.hpp"
 #include "slam_glue/map_building.hpp"
+#include "slam_glue/scan_odometry.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"
 
@@ -78,8 +79,11 @@ SlamResult run_slam(const std::filesystem::path& log, const SlamOptions& options
   result.log = reader.info();
   constexpr double kLocalizing = 0.95;  // its share of the work; the rest is the map
   GrowthWatch watch;
-  Pose2 last_odometry;
-  reader.read([&](const LogEntry& entry, double fraction) {
+  ScanOdometry scan_odometry;
+  const bool as_logged = options.method == "odometry";
+  reader.read([&](LogEntry entry, double fraction) {
+    // Wheels alone lead ICP and the particle filter astray: see ScanOdometry.
+    if (!as_logged) entry.odometry = scan_odometry.add(entry);
     localizer->add(entry);
     watch.see(entry.odometry, localizer->keyframes());
     result.trajectory.push_back({entry.scan.t, {}});
@@ -94,7 +98,7 @@ SlamResult run_slam(const std::filesystem::path& log, const SlamOptions& options
   for (std::size_t i = 0; i < poses.size(); ++i) result.trajectory[i].pose = T_map_slam * poses[i];
   result.path_m = path_length(result.trajectory);
   constexpr double kTooLong = 15.0;  // keyframes come every metre or so
-  if (options.method != "odometry" && watch.longest_m() > kTooLong)
+  if (!as_logged && watch.longest_m() > kTooLong)
     result.warnings.push_back(
         fmt::format("the SLAM's map did not grow over {:.0f} m of the way: scans no longer match it, "
                     "poses there are odometry; try another method",
