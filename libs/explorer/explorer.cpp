@@ -41,6 +41,7 @@ void Explorer::sense(double now_s) {
   changed_ = map_.take_changed();
   if (!changed_.empty()) {
     passable_.update(map_.states(), changed_);
+    board_.note_changes(changed_);
     map_news_s_ = now_s;
   }
   share(now_s);
@@ -90,6 +91,7 @@ bool Explorer::listen(double now_s) {
   for (const auto& delivery : mail) hear(delivery, now_s);
   if (auto news = map_.take_changed(); !news.empty()) {
     passable_.update(map_.states(), news);
+    board_.note_changes(news);
     changed_.insert(changed_.end(), news.begin(), news.end());
     map_news_s_ = now_s;
   }
@@ -127,16 +129,26 @@ void Explorer::act(double now_s) {
 
 void Explorer::check_task(double now_s) {
   if (!task_) return;
-  if (!decision::is_frontier(map_.states(), task_->cell))
+  if (!changed_.empty() && !frontier_near(task_->cell))
     return end_task(arrived_ ? "reached" : "seen from afar", now_s);
   if (!changed_.empty() && !way_is_passable() && !making_room_for_ && !plan(task_->stand))
     return end_task("no way", now_s);
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
-    board_.give_up(task_->cell);
+    board_.give_up(task_->cell, settings_.grain.spacing, map_.states());
     end_task("not observable", now_s);
   }
+}
+
+/// A task lives while its block of frontier does: robots sense on the way, and the very cell is soon behind the front.
+bool Explorer::frontier_near(Cell task) const {
+  const auto& map = map_.states();
+  const int reach = static_cast<int>(settings_.grain.spacing / 2.0 / map.geometry().resolution);
+  for (int y = task.y - reach; y <= task.y + reach; ++y)
+    for (int x = task.x - reach; x <= task.x + reach; ++x)
+      if (map.contains({x, y}) && decision::is_frontier(map, {x, y})) return true;
+  return false;
 }
 
 void Explorer::end_task(const char* how, double now_s) {

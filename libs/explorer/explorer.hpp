@@ -91,6 +91,7 @@ class Explorer {
   void run_coordinator(double now_s);
   void apply(const Decision& decision, double now_s);
   void check_task(double now_s);
+  bool frontier_near(Cell task) const;
   void end_task(const char* how, double now_s);
   void nothing_left(double now_s);
   void go_home(double now_s);

@@ -33,6 +33,9 @@ std::string to_string(LeftReason reason) {
 
 TaskBoard::TaskBoard(const RobotSpec& spec, const GridGeometry& geometry)
     : spec_(spec), geometry_(geometry), footprint_(spec.range, geometry.resolution) {
+  const double edge = spec.range + geometry.resolution;
+  const auto blocks = [&](int cells) { return static_cast<int>(cells * geometry.resolution / edge) + 1; };
+  revisions_ = Grid<std::uint64_t>({edge, geometry.origin, blocks(geometry.width), blocks(geometry.height)});
   const double stand_off = std::min(spec.range, spec.radius + 2.0 * geometry.resolution);
   near_ = offsets_within(static_cast<int>(stand_off / geometry.resolution));
 }
@@ -95,13 +98,38 @@ std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decisio
   for (const Cell task : tasks) {
     const auto stand = stand_for(map, task);
     if (!stand) continue;
-    entries.push_back({task, *stand, static_cast<float>(footprint_.unseen_area(map, *stand)),
+    entries.push_back({task, *stand, static_cast<float>(gain_at(map, *stand)),
                        static_cast<float>(field_.metres(*stand))});
   }
   std::sort(entries.begin(), entries.end(), [](const BidEntry& a, const BidEntry& b) {
     return std::tie(a.task.y, a.task.x) < std::tie(b.task.y, b.task.x);
   });
   return entries;
+}
+
+void TaskBoard::give_up(Cell task, double spacing, const OccupancyGrid& map) {
+  const int reach = static_cast<int>(spacing / 2.0 / geometry_.resolution);
+  for (int y = task.y - reach; y <= task.y + reach; ++y)
+    for (int x = task.x - reach; x <= task.x + reach; ++x)
+      if (map.contains({x, y}) && decision::is_frontier(map, {x, y})) given_up_.insert({y, x});
+}
+
+void TaskBoard::note_changes(std::span<const std::uint32_t> changed) {
+  ++revision_;
+  for (const std::uint32_t i : changed)
+    revisions_[revisions_.geometry().cell_of(geometry_.center(geometry_.cell_at(i)))] = revision_;
+}
+
+/// The footprint reaches one block far at most: the gain still holds when none of the nine blocks around has changed.
+double TaskBoard::gain_at(const OccupancyGrid& map, Cell stand) {
+  const Cell block = revisions_.geometry().cell_of(geometry_.center(stand));
+  std::uint64_t newest = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx)
+      if (const Cell b{block.x + dx, block.y + dy}; revisions_.contains(b)) newest = std::max(newest, revisions_[b]);
+  auto [entry, fresh] = gains_.try_emplace(geometry_.index(stand));
+  if (fresh || entry->second.revision < newest) entry->second = {revision_, footprint_.unseen_area(map, stand)};
+  return entry->second.area;
 }
 
 std::vector<Cell> TaskBoard::path_to(const Grid<std::uint8_t>& passable, Cell at, Cell stand) {

@@ -2,7 +2,9 @@
 
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "decision/distance_field.hpp"
@@ -16,7 +18,7 @@ namespace outrider::explorer {
 
 /// How fine the tasks of a frontier are.
 struct TaskGrain {
-  double spacing = 0.0;      ///< one task a block of this edge and cluster [m]; 0: every frontier cell is a task
+  double spacing = 1.0;      ///< one task a block of this edge and cluster [m]; the paper's cells are 1 m
   std::size_t most = 256;    ///< more tasks than this double the spacing until they fit
 };
 
@@ -38,11 +40,13 @@ class TaskBoard {
   /// All tasks that this robot can serve from cell `at`, by task position (row, then column).
   std::vector<BidEntry> entries(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
                                 const TaskGrain& grain);
+  /// The map changed there: gains of tasks within sight of it are computed anew.
+  void note_changes(std::span<const std::uint32_t> changed);
   /// The shortest safe path from `at` to `stand`, both included; empty when there is none. Reuses the distances of the
   /// last entries() when they still hold.
   std::vector<Cell> path_to(const Grid<std::uint8_t>& passable, Cell at, Cell stand);
   /// The task was served and is still a frontier: never try it again from here.
-  void give_up(Cell task) { given_up_.insert({task.y, task.x}); }
+  void give_up(Cell task, double spacing, const OccupancyGrid& map);
   bool given_up(Cell task) const { return given_up_.contains({task.y, task.x}); }
   /// Frontier clusters of `map` with the reason why this robot would leave each.
   std::vector<Left> left(const OccupancyGrid& map);
@@ -59,6 +63,15 @@ class TaskBoard {
   decision::DistanceField field_;         // from field_at_
   Cell field_at_{-1, -1};
   decision::Footprint footprint_;
+  double gain_at(const OccupancyGrid& map, Cell stand);
+
+  struct Gain {
+    std::uint64_t revision;  // of the map around, when computed
+    double area;             // [m^2]
+  };
+  std::unordered_map<std::uint64_t, Gain> gains_;  // by cell index; looked up, never iterated
+  Grid<std::uint64_t> revisions_;                  // of each block of the map; a block is a sensing range wide
+  std::uint64_t revision_ = 0;
   std::vector<Cell> near_;                // offsets around a task where a robot may stand, nearest first
   std::set<std::pair<int, int>> given_up_;  // (row, column)
 };
