@@ -25,23 +25,24 @@ class Localizer {
 /// the points CSAIL is no more accurate, but takes 3 times as long.
 struct IcpSettings {
   double max_range_m = 30.0;
-  double locate_every_m = 0.15, locate_every_rad = 0.1;  ///< motion between two matches
-  double insert_every_m = 1.2, insert_every_rad = 1.2;   ///< motion between two keyframes
-  double least_goodness = 0.25;
-  unsigned max_iterations = 40;
-  double threshold_m = 0.4, threshold_rad = 0.05;  ///< points pair up to threshold_m + range * threshold_rad [m]
-  double smallest_threshold_m = 0.1;
-  double shrink = 0.5;           ///< of the thresholds, after each convergence
-  double point_spacing_m = 0.1;  ///< of the map
-  unsigned decimation = 3;       ///< of a scan's points when matched
+  double locate_every_m = 0.2, locate_every_rad = 0.087;  ///< motion between two matches
+  double insert_every_m = 1.2, insert_every_rad = 0.785;  ///< motion between two keyframes
+  double least_goodness = 0.4;
+  unsigned max_iterations = 80;
+  double threshold_m = 0.3, threshold_rad = 0.087;  ///< points pair up to threshold_m + range * threshold_rad [m]
+  double smallest_threshold_m = 0.05;
+  double shrink = 0.8;            ///< of the thresholds, after each convergence
+  double point_spacing_m = 0.05;  ///< of the map
+  unsigned decimation = 5;        ///< of a scan's points when matched
 };
+/// MRPT's ICP against a growing points map, led by odometry that scan matching has corrected (ScanOdometry).
 std::unique_ptr<Localizer> make_icp(const IcpSettings& settings);
 
 struct RbpfSettings {
   double max_range_m = 30.0;
-  int particles = 15;
+  int particles = 10;
   std::uint64_t seed = 1;
-  double update_every_m = 0.5, update_every_rad = 0.35;  ///< motion between two updates of the filter
+  double update_every_m = 1.0, update_every_rad = 0.6;  ///< motion between two updates of the filter
 };
 /// Seeds MRPT's random generator of the calling thread.
 std::unique_ptr<Localizer> make_rbpf(const RbpfSettings& settings);

@@ -14,6 +14,7 @@
 #include <mrpt/slam/CMetricMapBuilderRBPF.h>
 
 #include "slam_glue/localizer.hpp"
+#include "slam_glue/scan_odometry.hpp"
 
 namespace outrider::slam_glue {
 namespace {
@@ -95,14 +96,15 @@ class IcpLocalizer : public Localizer {
 
   void add(const LogEntry& entry) override {
     const auto time = set_clock(entry.scan.t);
+    const Pose2 pose = scan_odometry_.add(entry);
     if (poses_.empty()) {
       builder_.initialize();
-      first_odometry_ = entry.odometry;
+      first_odometry_ = pose;
     }
     auto odometry = mrpt::obs::CObservationOdometry::Create();
     odometry->timestamp = time;
     odometry->sensorLabel = "odometry";
-    odometry->odometry = to_mrpt(inverse(first_odometry_) * entry.odometry);
+    odometry->odometry = to_mrpt(inverse(first_odometry_) * pose);
     builder_.processObservation(odometry);
     builder_.processObservation(to_mrpt(entry.scan, settings_.max_range_m, time));
     poses_.push_back(mean_of(builder_));
@@ -113,6 +115,7 @@ class IcpLocalizer : public Localizer {
  private:
   IcpSettings settings_;
   mrpt::slam::CMetricMapBuilderICP builder_;
+  ScanOdometry scan_odometry_;
   Pose2 first_odometry_;
   std::vector<Pose2> poses_;
 };
@@ -170,7 +173,7 @@ mrpt::slam::CMetricMapBuilderRBPF::TConstructionOptions RbpfLocalizer::options(c
   o.PF_options.sampleSize = static_cast<unsigned>(s.particles);
   o.PF_options.BETA = 0.5;
   o.PF_options.resamplingMethod = mrpt::bayes::CParticleFilter::prSystematic;
-  o.mapsInitializers = points_map(0.05);
+  o.mapsInitializers = points_map(0.1);
   auto& prediction = o.predictionOptions;
   prediction.pfOptimalProposal_mapSelection = 3;  // scan matching against the points map
   auto& icp = prediction.icp_params;

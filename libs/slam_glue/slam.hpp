@@ -19,7 +19,7 @@ struct SlamOptions {
   double resolution = 0.05;    ///< of the published map [m]
   double max_range_m = 30.0;   ///< echoes from farther away are not used [m]
   std::uint64_t seed = 1;      ///< of the particle filter
-  int particles = 15;          ///< of the particle filter
+  int particles = 10;          ///< of the particle filter
   std::optional<Pose2> start;  ///< T_map_robot at the first scan; default: the origin, or as logged for "odometry"
 };
 
