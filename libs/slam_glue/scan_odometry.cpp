@@ -103,9 +103,11 @@ Pose2 ScanOdometry::add(const LogEntry& entry) {
   wheels_ = entry.odometry;
   if (first) pose_ = entry.odometry;
   const bool moved = std::hypot(move.x, move.y) > kStillM || std::abs(move.theta) > kStillRad;
+  has_wheels_ = has_wheels_ || moved;
   pose_ = pose_ * move;
   if (first) set_reference(pose_);
-  if (first || !moved || points_.size() < kFewestPoints) return pose_;
+  const bool still = has_wheels_ && !moved;  // without odometry, every scan may have moved
+  if (first || still || points_.size() < kFewestPoints) return pose_;
 
   const std::size_t stride = std::max<std::size_t>(1, points_.size() / 80);
   const Pose2 guess = inverse(reference_) * pose_;

@@ -26,6 +26,7 @@ class ScanOdometry {
   std::vector<std::uint8_t> field_;  ///< nearness to a point of the reference scan, 0..255
   std::vector<Point> points_;        ///< of the current scan, in the robot's frame
   std::optional<Pose2> wheels_;      ///< at the last scan
+  bool has_wheels_ = false;          ///< whether the wheels have ever moved
   Pose2 pose_;                       ///< corrected, at the last scan
   Pose2 reference_;                  ///< corrected, where the reference scan was taken
 };
