@@ -136,7 +136,7 @@ void Explorer::check_task(double now_s) {
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
-    board_.give_up(task_->cell, settings_.grain.spacing, map_.states());
+    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing, map_.states());
     end_task("not observable", now_s);
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "world/ray.hpp"
@@ -107,11 +108,11 @@ std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decisio
   return entries;
 }
 
-void TaskBoard::give_up(Cell task, double spacing, const OccupancyGrid& map) {
+void TaskBoard::give_up(Cell task, Cell stand, double spacing, const OccupancyGrid& map) {
   const int reach = static_cast<int>(spacing / 2.0 / geometry_.resolution);
   for (int y = task.y - reach; y <= task.y + reach; ++y)
     for (int x = task.x - reach; x <= task.x + reach; ++x)
-      if (map.contains({x, y}) && decision::is_frontier(map, {x, y})) given_up_.insert({y, x});
+      if (map.contains({x, y}) && decision::is_frontier(map, {x, y})) given_up_[{y, x}] |= stand == task;
 }
 
 void TaskBoard::note_changes(std::span<const std::uint32_t> changed) {
@@ -154,7 +155,7 @@ std::vector<Left> TaskBoard::left(const OccupancyGrid& map) {
     bool tried = false;
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
       const Cell c = geometry_.cell_at(frontiers.cells[k]);
-      tried = tried || given_up(c);
+      if (const auto at = given_up_.find({c.y, c.x}); at != given_up_.end()) tried = tried || at->second;
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
           const Cell n{c.x + dx, c.y + dy};

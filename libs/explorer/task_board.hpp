@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <set>
+#include <map>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -46,7 +46,7 @@ class TaskBoard {
   /// last entries() when they still hold.
   std::vector<Cell> path_to(const Grid<std::uint8_t>& passable, Cell at, Cell stand);
   /// The task was served and is still a frontier: never try it again from here.
-  void give_up(Cell task, double spacing, const OccupancyGrid& map);
+  void give_up(Cell task, Cell stand, double spacing, const OccupancyGrid& map);
   bool given_up(Cell task) const { return given_up_.contains({task.y, task.x}); }
   /// Frontier clusters of `map` with the reason why this robot would leave each.
   std::vector<Left> left(const OccupancyGrid& map);
@@ -73,7 +73,7 @@ class TaskBoard {
   Grid<std::uint64_t> revisions_;                  // of each block of the map; a block is a sensing range wide
   std::uint64_t revision_ = 0;
   std::vector<Cell> near_;                // offsets around a task where a robot may stand, nearest first
-  std::set<std::pair<int, int>> given_up_;  // (row, column)
+  std::map<std::pair<int, int>, bool> given_up_;  // (row, column) -> the robot stood right there
 };
 
 }  // namespace outrider::explorer

@@ -122,14 +122,14 @@ map:
 TEST(Mission, AGapTooNarrowForTheRobotIsReportedWithItsReason) {
   const sim::World world = sim::parse_world(R"(resolution: 0.5
 map:
-###############
-#......#......#
-#..0..........#
-#......#......#
-###############
+#########################
+#......#................#
+#..0....................#
+#......#................#
+#########################
 )", "narrow door");
   auto team = team_for(world, 1, 0.45);
-  team[0].range = 2.0;
+  team[0].range = 3.0;
   const auto result = run_mission(world.map, team, {});
   ASSERT_FALSE(result.left.empty());
   EXPECT_TRUE(std::any_of(result.left.begin(), result.left.end(),
