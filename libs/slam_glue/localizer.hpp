@@ -25,17 +25,16 @@ class Localizer {
 /// the points CSAIL is no more accurate, but takes 3 times as long.
 struct IcpSettings {
   double max_range_m = 30.0;
-  double locate_every_m = 0.2, locate_every_rad = 0.087;  ///< motion between two matches
-  double insert_every_m = 1.2, insert_every_rad = 0.785;  ///< motion between two keyframes
-  double least_goodness = 0.4;
-  unsigned max_iterations = 80;
-  double threshold_m = 0.3, threshold_rad = 0.087;  ///< points pair up to threshold_m + range * threshold_rad [m]
-  double smallest_threshold_m = 0.05;
-  double shrink = 0.8;            ///< of the thresholds, after each convergence
-  double point_spacing_m = 0.05;  ///< of the map
-  unsigned decimation = 5;        ///< of a scan's points when matched
+  double locate_every_m = 0.15, locate_every_rad = 0.1;  ///< motion between two matches
+  double insert_every_m = 1.2, insert_every_rad = 1.2;   ///< motion between two keyframes
+  double least_goodness = 0.25;
+  unsigned max_iterations = 40;
+  double threshold_m = 0.4, threshold_rad = 0.05;  ///< points pair up to threshold_m + range * threshold_rad [m]
+  double smallest_threshold_m = 0.1;
+  double shrink = 0.5;           ///< of the thresholds, after each convergence
+  double point_spacing_m = 0.1;  ///< of the map
+  unsigned decimation = 3;       ///< of a scan's points when matched
 };
-/// MRPT's ICP against a growing points map, led by odometry that scan matching has corrected (ScanOdometry).
 std::unique_ptr<Localizer> make_icp(const IcpSettings& settings);
 
 struct RbpfSettings {

@@ -14,7 +14,6 @@
 #include <mrpt/slam/CMetricMapBuilderRBPF.h>
 
 #include "slam_glue/localizer.hpp"
-#include "slam_glue/scan_odometry.hpp"
 
 namespace outrider::slam_glue {
 namespace {
@@ -96,15 +95,14 @@ class IcpLocalizer : public Localizer {
 
   void add(const LogEntry& entry) override {
     const auto time = set_clock(entry.scan.t);
-    const Pose2 pose = scan_odometry_.add(entry);
     if (poses_.empty()) {
       builder_.initialize();
-      first_odometry_ = pose;
+      first_odometry_ = entry.odometry;
     }
     auto odometry = mrpt::obs::CObservationOdometry::Create();
     odometry->timestamp = time;
     odometry->sensorLabel = "odometry";
-    odometry->odometry = to_mrpt(inverse(first_odometry_) * pose);
+    odometry->odometry = to_mrpt(inverse(first_odometry_) * entry.odometry);
     builder_.processObservation(odometry);
     builder_.processObservation(to_mrpt(entry.scan, settings_.max_range_m, time));
     poses_.push_back(mean_of(builder_));
@@ -115,7 +113,6 @@ class IcpLocalizer : public Localizer {
  private:
   IcpSettings settings_;
   mrpt::slam::CMetricMapBuilderICP builder_;
-  ScanOdometry scan_odometry_;
   Pose2 first_odometry_;
   std::vector<Pose2> poses_;
 };
