@@ -33,6 +33,9 @@ void add_output_flags(CLI::App& verb, Context& ctx);
 /// Adds --out --force --seed --jobs to a verb that makes a run folder.
 void add_run_flags(CLI::App& verb, Context& ctx);
 
+/// Accepts finite numbers from `low` to `high` only (CLI::Range lets nan through).
+CLI::Validator number_in(double low, double high);
+
 // One file a verb. Each adds its subcommand; the callback runs it and sets ctx.exit_code.
 void add_explore(CLI::App& app, Context& ctx);
 void add_replay(CLI::App& app, Context& ctx);

@@ -97,6 +97,20 @@ void print_summary(const report::RunRecord& record, const Json& result, const Co
   fmt::print("{}\n", ctx.out.empty() ? std::string() : fmt::format("; report: {}", (ctx.out / "report.html").string()));
 }
 
+MissionResult run(const sim::World& world, const std::vector<RobotSpec>& team, const MissionSettings& settings,
+                  const Options& o, const Context& ctx) {
+  Progress progress("exploring", ctx.quiet);
+  try {
+    return explorer::run_mission(world.map, team, settings, [&](double now_s, double fraction) {
+      progress.update(fraction, fmt::format("{:.0f} s simulated", now_s));
+      return !ctx.interrupted->load();
+    });
+  } catch (const InputError& e) {  // an impossible start: say whose
+    if (o.team_file.empty()) throw;
+    throw InputError(fmt::format("{}: {}", o.team_file.string(), e.what()));
+  }
+}
+
 void explore(const Options& o, Context& ctx) {
   if (!ctx.out.empty()) report::check_out_dir(ctx.out, ctx.force);
   const sim::World world = open_world(o.world, o.resolution);
@@ -104,14 +118,7 @@ void explore(const Options& o, Context& ctx) {
       place_team(world, o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file));
   const MissionSettings settings = mission_settings(o, ctx, team);
   const auto begin = std::chrono::steady_clock::now();
-  MissionResult result;
-  {
-    Progress progress("exploring", ctx.quiet);
-    result = explorer::run_mission(world.map, team, settings, [&](double now_s, double fraction) {
-      progress.update(fraction, fmt::format("{:.0f} s simulated", now_s));
-      return !ctx.interrupted->load();
-    });
-  }
+  MissionResult result = run(world, team, settings, o, ctx);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   Json times = timing(wall.count(), result);
   report::RunRecord record = mission_record(std::move(result), settings, world.map);
@@ -139,7 +146,7 @@ void add_explore(CLI::App& app, Context& ctx) {
   verb->add_option("WORLD", o->world, "name from 'outrider list worlds', or a map: ROS .yaml, image, .gridmap[.gz], "
                    "MovingAI .map, ASCII .txt")->capture_default_str();
   verb->add_option("--resolution", o->resolution, "edge of a cell for images, .map and .txt [m]")
-      ->check(CLI::PositiveNumber)->type_name("M");
+      ->check(number_in(1e-3, 1e3))->type_name("M");
   auto* robots = verb->add_option("--robots", o->robots, "size of the team (default: the world's usual team)")
                      ->check(CLI::Range(1, 1000))->type_name("N");
   verb->add_option("--team", o->team_file, "team file (YAML)")->type_name("FILE")->excludes(robots);
@@ -151,21 +158,23 @@ void add_explore(CLI::App& app, Context& ctx) {
   verb->add_option("--localization", o->localization, "perfect (odometry and slam are to come)")
       ->check(CLI::IsMember({"perfect"}))->capture_default_str()->type_name("KIND");
   verb->add_option("--range-noise", o->range_noise, "standard deviation of a lidar range [m]")
-      ->check(CLI::Range(0.0, 10.0))->capture_default_str()->type_name("M");
+      ->check(number_in(0.0, 10.0))->capture_default_str()->type_name("M");
   verb->add_option("--until", o->until, "stop when this fraction of the reachable area has been seen")
-      ->check(CLI::Range(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
+      ->check(number_in(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
   verb->add_option("--max-time", o->max_time, "stop after this much simulated time [s] (default: a generous limit)")
-      ->check(CLI::PositiveNumber)->type_name("S");
+      ->check(number_in(1e-3, 1e9))->type_name("S");
   verb->add_flag("--return-home", o->return_home, "drive back to the starts in the end");
   verb->add_option("--fault", o->fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR; comma-separated")
       ->type_name("SPEC");
   verb->add_flag("--octomap", o->octomap, "also write map.bt (OctoMap)");
-  verb->add_option("--rho", o->bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")->capture_default_str();
+  verb->add_option("--rho", o->bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")
+      ->check(number_in(0.0, 1e9))->capture_default_str();
   verb->add_option("--gamma", o->bids.gamma, "ia, ea, daa: influence of robots without target (eq. 2)")
-      ->capture_default_str();
-  verb->add_option("--influence-weight", o->bids.weight, "ia, ea, daa: of U_p2 as a whole [m^2]")->capture_default_str();
+      ->check(number_in(0.0, 1e9))->capture_default_str();
+  verb->add_option("--influence-weight", o->bids.weight, "ia, ea, daa: of U_p2 as a whole [m^2]")
+      ->check(number_in(0.0, 1e9))->capture_default_str();
   verb->add_option("--alpha", o->bids.alpha, "daa: expected utility per explored rate [s] (eq. 10)")
-      ->capture_default_str();
+      ->check(number_in(0.0, 1e9))->capture_default_str();
   verb->add_option("--turn", o->turn, "ia, ea, daa, ta: whose bid is served next")
       ->check(CLI::IsMember({"best-bid", "robot-order"}))->capture_default_str();
   add_run_flags(*verb, ctx);

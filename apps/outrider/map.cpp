@@ -34,6 +34,8 @@ nlohmann::ordered_json describe(const std::string& name, const OccupancyGrid& ma
 void convert(const OccupancyGrid& map, const std::filesystem::path& out, bool force) {
   if (std::filesystem::exists(out) && !force)
     throw InputError(fmt::format("{}: exists; --force replaces it", out.string()));
+  if (const auto folder = out.parent_path(); !folder.empty() && !std::filesystem::is_directory(folder))
+    throw InputError(fmt::format("{}: no such folder; expected an existing one for OUT", folder.string()));
   const std::string name = out.filename().string();
   if (name.ends_with(".yaml") || name.ends_with(".yml")) slam_glue::save_ros_map(map, out);
   else if (name.ends_with(".gridmap") || name.ends_with(".gridmap.gz")) slam_glue::save_gridmap(map, out);
@@ -63,7 +65,7 @@ void add_map(CLI::App& app, Context& ctx) {
   verb->add_option("IN", o->in, "world name or map file")->required();
   verb->add_option("OUT", o->out, ".yaml (ROS map_server), .gridmap[.gz] (MRPT) or .bt (OctoMap)");
   verb->add_option("--resolution", o->resolution, "edge of a cell for images, .map and .txt [m]")
-      ->check(CLI::PositiveNumber)->type_name("M");
+      ->check(number_in(1e-3, 1e3))->type_name("M");
   verb->add_flag("--info", o->info, "print size, origin and areas");
   verb->add_flag("--force", ctx.force, "replace OUT");
   add_output_flags(*verb, ctx);

@@ -173,9 +173,9 @@ void add_replay(CLI::App& app, Context& ctx) {
   verb->add_option("LOG", o->logs, "MRPT .rawlog[.gz] or CARMEN .log/.clf[.gz]")->required();
   verb->add_option("--slam", o->slam.method, "see 'outrider list slam'")->capture_default_str()->type_name("METHOD");
   verb->add_option("--resolution", o->slam.resolution, "edge of a cell of the map [m]")
-      ->check(CLI::Range(0.005, 10.0))->capture_default_str()->type_name("M");
+      ->check(number_in(0.005, 10.0))->capture_default_str()->type_name("M");
   verb->add_option("--max-range", o->slam.max_range_m, "echoes from farther away are not used [m]")
-      ->check(CLI::Range(0.1, 1000.0))->capture_default_str()->type_name("M");
+      ->check(number_in(0.1, 1000.0))->capture_default_str()->type_name("M");
   verb->add_option("--relations", o->relations, "relations to compare with (Kuemmerle et al. 2009)")->type_name("FILE");
   verb->add_option("--ground-truth", o->ground_truth, "true trajectory: TUM, or lines of t x y theta")
       ->type_name("FILE");

@@ -26,9 +26,14 @@ class Reader {
                                     : fmt::format("{}:{}: {}", path_.string(), mark.line + 1, what));
   }
 
+  std::string text(const YAML::Node& node, const char* what) const {
+    if (!node.IsScalar()) fail(node, fmt::format("expected text as {}, not a list or a map", what));
+    return node.Scalar();
+  }
+
   void known_keys(const YAML::Node& map, const std::vector<std::string>& keys) const {
     for (const auto& pair : map) {
-      const auto key = pair.first.as<std::string>();
+      const std::string key = text(pair.first, "a key");
       if (std::find(keys.begin(), keys.end(), key) == keys.end())
         fail(pair.first, fmt::format("unknown key '{}'{}", key, suggestion(key, keys)));
     }
@@ -50,7 +55,8 @@ class Reader {
 
   YAML::Node load() const {
     std::ifstream file(path_);
-    if (!file) throw InputError(fmt::format("{}: cannot open the team file", path_.string()));
+    if (!file || std::filesystem::is_directory(path_))
+      throw InputError(fmt::format("{}: cannot open the team file", path_.string()));
     try {
       return YAML::Load(file);
     } catch (const YAML::Exception& e) {
@@ -66,7 +72,7 @@ RobotSpec read_robot(const Reader& reader, const YAML::Node& node, std::size_t i
   if (!node.IsMap()) reader.fail(node, "expected a robot as {name, start, speed, range, fov, beams, radius}");
   reader.known_keys(node, kRobotKeys);
   RobotSpec robot;
-  robot.name = node["name"] ? node["name"].as<std::string>() : fmt::format("robot{}", index + 1);
+  robot.name = node["name"] ? reader.text(node["name"], "name") : fmt::format("robot{}", index + 1);
   constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
   if (robot.name.empty() || robot.name.find_first_not_of(kAllowed) != std::string::npos)
     reader.fail(node["name"], fmt::format("name: expected letters, digits, '_' or '-', not '{}'", robot.name));

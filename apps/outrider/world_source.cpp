@@ -17,7 +17,9 @@ namespace {
 sim::World read_text_world(const std::filesystem::path& path, std::optional<double> resolution) {
   std::ifstream file(path);
   std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(fmt::format("{}: cannot read the map", path.string()));
+  if (!std::filesystem::is_regular_file(path) || !file)
+    throw InputError(fmt::format("{}: cannot read the map", path.string()));
+  if (!(text << file.rdbuf())) throw InputError(fmt::format("{}: empty; expected an ASCII map", path.string()));
   return sim::parse_world(text.str(), path.string(), resolution.value_or(1.0));
 }
 
