@@ -123,8 +123,10 @@ TEST(Carmen, PlainGzipAndDosLinesReadAlike) {
   std::string text = "# a comment\r\n\r\n" + flaser(5, "1 host 1") + flaser(5, "2 host 2");
   const auto plain = entries_of(dir.write("a.log", text));
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2)
-    if (at == 0 || text[at - 1] != '\r') text.insert(at, 1, '\r');
-    else --at;
+    if (at == 0 || text[at - 1] != '\r')
+      text.insert(at, 1, '\r');
+    else
+      --at;
   text.pop_back(), text.pop_back();  // nor does the last line need an end
   const std::string name = dir / "b.log.gz";
   gzFile gz = gzopen(name.c_str(), "wb");

@@ -85,7 +85,9 @@ TEST(Rawlog, GarbageAndEmptyFilesAreRefused) {
   std::mt19937 random(7);
   std::string garbage;
   for (int i = 0; i < 20'000; ++i) garbage += static_cast<char>(random() & 0xFF);
-  const std::string object = "\x8F" "CSensoryFrame12";
+  const std::string object =
+      "\x8F"
+      "CSensoryFrame12";
   for (const std::string& bytes : {std::string(), garbage, object + garbage}) {
     SCOPED_TRACE(bytes.size());
     const auto file = dir.write("x.rawlog", bytes);
