@@ -113,7 +113,8 @@ MissionResult run(const sim::World& world, const std::vector<RobotSpec>& team, c
 
 void explore(const Options& o, Context& ctx) {
   if (!ctx.out.empty()) report::check_out_dir(ctx.out, ctx.force);
-  const sim::World world = open_world(o.world, o.resolution);
+  sim::World world = open_world(o.world, o.resolution);
+  world.map = explorer::solid_map(std::move(world.map));
   const std::vector<RobotSpec> team =
       place_team(world, o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file));
   const MissionSettings settings = mission_settings(o, ctx, team);

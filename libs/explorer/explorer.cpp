@@ -133,12 +133,23 @@ void Explorer::check_task(double now_s) {
     return end_task(arrived_ ? "reached" : "seen from afar", now_s);
   if (!changed_.empty() && !way_is_passable() && !making_room_for_ && !plan(task_->stand))
     return end_task("no way", now_s);
+  if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
+    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing, map_.states());
+    stop();
+    return end_task("out of time", now_s);
+  }
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
     board_.give_up(task_->cell, task_->stand, settings_.grain.spacing, map_.states());
     end_task("not observable", now_s);
   }
+}
+
+/// What a task or the way home may take: several times the way, and time for some encounters [s].
+double Explorer::patience() const {
+  const double metres = static_cast<double>(way_.size()) * map_.states().geometry().resolution;
+  return 60.0 + 5.0 * metres / spec_.speed;
 }
 
 /// A task lives while its block of frontier does: robots sense on the way, and the very cell is soon behind the front.
@@ -193,6 +204,7 @@ void Explorer::apply(const Decision& decision, double now_s) {
     }
     task_ = decision.task;
     arrived_s_ = now_s;
+    deadline_s_ = now_s + patience();
     making_room_for_.reset();
     priority_ = base_priority();
     status_news_ = true;

@@ -40,7 +40,7 @@ struct GoalEvent {
 struct TaskEndEvent {
   RobotId robot;
   Cell task;
-  const char* how;  ///< "reached", "seen from afar", "no way", "not observable", "blocked", "reassigned"
+  const char* how;  ///< "reached", "seen from afar", "no way", "not observable", "blocked", "out of time", "reassigned"
 };
 struct PhaseEvent {
   RobotId robot;
@@ -91,6 +91,7 @@ class Explorer {
   void run_coordinator(double now_s);
   void apply(const Decision& decision, double now_s);
   void check_task(double now_s);
+  double patience() const;
   bool frontier_near(Cell task) const;
   void end_task(const char* how, double now_s);
   void nothing_left(double now_s);
@@ -139,6 +140,7 @@ class Explorer {
   std::vector<Cell> way_;              // from the current cell on, what is left to drive
   double map_news_s_ = 0.0;            // when the map last changed
   double refused_s_ = -1e9;            // when the coordinator last had nothing for us
+  double deadline_s_ = 0.0;            // for the task [s]
   double arrived_s_ = 0.0;             // when the stand was reached
   double new_area_ = 0.0;              // Delta A of the auction period so far [m^2]
   double period_begin_s_ = 0.0;

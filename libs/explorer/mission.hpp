@@ -81,6 +81,9 @@ struct MissionResult {
   std::vector<double> decision_ms;  ///< wall-clock time of every act(); the only part that differs between equal runs
 };
 
+/// The map with every unknown cell occupied: what bodies and sensors of the simulator meet.
+OccupancyGrid solid_map(OccupancyGrid map);
+
 /// Cells that the team's slimmest robot can drive over, with the margin of its body: what "explored" is measured
 /// against. Reached from any start. 1 = reachable.
 Grid<std::uint8_t> reachable_area(const OccupancyGrid& truth, const std::vector<RobotSpec>& team);
@@ -91,7 +94,7 @@ using MissionProgress = std::function<bool(double now_s, double explored_fractio
 using MapperFactory = std::function<std::unique_ptr<ScanMapper>(const GridGeometry&, const RobotSpec&)>;
 
 /// Runs a mission to its end. Deterministic in everything but decision_ms. Throws InputError for impossible starts or
-/// an unknown coordinator.
+/// an unknown coordinator. `truth` is free or occupied everywhere (see solid_map).
 MissionResult run_mission(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
                           const MissionSettings& settings, const MissionProgress& progress = {});
 

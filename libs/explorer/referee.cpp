@@ -22,6 +22,11 @@ bool uniform(const TimedPose& a, const TimedPose& last, const TimedPose& b) {
 
 }  // namespace
 
+OccupancyGrid solid_map(OccupancyGrid map) {
+  std::replace(map.data().begin(), map.data().end(), CellState::kUnknown, CellState::kOccupied);
+  return map;
+}
+
 Grid<std::uint8_t> reachable_area(const OccupancyGrid& truth, const std::vector<RobotSpec>& team) {
   double slimmest = std::numeric_limits<double>::infinity();
   std::vector<Cell> starts;

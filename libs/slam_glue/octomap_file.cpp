@@ -22,7 +22,10 @@ void save_octomap(const OccupancyGrid& map, const std::filesystem::path& bt, dou
   tree.updateInnerOccupancy();
   tree.prune();
   std::ofstream out(bt, std::ios::binary);
-  tree.writeBinaryConst(out);
+  // What writeBinaryConst() does, without its chatter on stderr.
+  out << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
+      << "id " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
+  tree.writeBinaryData(out);
   out.flush();
   if (!out) throw std::runtime_error(fmt::format("{}: cannot write the OctoMap", bt.string()));
 }
