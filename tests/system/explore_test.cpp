@@ -157,7 +157,7 @@ TEST_F(Explore, SilentRobotsExploreEachForItself) {
   EXPECT_EQ(result["messages"]["delivered"], 0);
 }
 
-// Known defect: from 406 s on robot1 drives towards (1.875, 0.625) for ever, and the run ends by its time limit.
+// Two robots that cannot talk once drove to and fro for ever over the last frontier.
 TEST_F(Explore, SilentAuctioneersComeToAnEnd) {
   const Outcome outcome = run({"explore", "office1", "--robots", "2", "--coordinator", "daa", "--comms", "none",
                                "--max-time", "3000", "--out", "run"});
