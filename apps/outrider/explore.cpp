@@ -5,6 +5,7 @@
 #include <chrono>
 #include <sstream>
 
+#include "comms_spec.hpp"
 #include "context.hpp"
 #include "explorer/mission.hpp"
 #include "mission_record.hpp"
@@ -50,7 +51,8 @@ MissionSettings mission_settings(const Options& o, const Context& ctx, const std
   settings.until = o.until;
   settings.max_time_s = o.max_time;
   settings.faults = parse_faults(o.fault, team);
-  settings.link = parse_comms(o.comms);
+  settings.radio = parse_comms(o.comms, team);
+  settings.radio.seed = ctx.seed;
   return settings;
 }
 
@@ -153,7 +155,8 @@ void add_explore(CLI::App& app, Context& ctx) {
   verb->add_option("--team", o->team_file, "team file (YAML)")->type_name("FILE")->excludes(robots);
   verb->add_option("--coordinator", o->coordinator, "who goes where; see 'outrider list coordinators'")
       ->capture_default_str()->type_name("NAME");
-  verb->add_option("--comms", o->comms, "radio: ideal, none")->capture_default_str()->type_name("SPEC");
+  verb->add_option("--comms", o->comms, "radio: ideal, none, range:R, los, loss:P, delay:S, breaks:NxS[@WITHIN], "
+                   "break:T0-T1[:A+B], split:T0-T1:A+B; comma-separated")->capture_default_str()->type_name("SPEC");
   verb->add_option("--sensing", o->sensing, "disc: every cell in range and sight; lidar: simulated scans")
       ->check(CLI::IsMember({"disc", "lidar"}))->capture_default_str()->type_name("KIND");
   verb->add_option("--localization", o->localization, "perfect (odometry and slam are to come)")
@@ -165,7 +168,8 @@ void add_explore(CLI::App& app, Context& ctx) {
   verb->add_option("--max-time", o->max_time, "stop after this much simulated time [s] (default: a generous limit)")
       ->check(number_in(1e-3, 1e9))->type_name("S");
   verb->add_flag("--return-home", o->return_home, "drive back to the starts in the end");
-  verb->add_option("--fault", o->fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR; comma-separated")
+  verb->add_option("--fault", o->fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR, deaf:ROBOT@T0-T1; "
+                   "comma-separated")
       ->type_name("SPEC");
   verb->add_flag("--octomap", o->octomap, "also write map.bt (OctoMap)");
   verb->add_option("--rho", o->bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")

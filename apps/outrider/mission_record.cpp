@@ -61,6 +61,13 @@ class EventWriter {
     line["robot"] = name(e.robot);
     line["fault"] = e.what;
   }
+  void write(Json& line, const explorer::BreakEvent& e) const {
+    line["event"] = e.which.kind == link::Break::Kind::kSplit ? "split" : "break";
+    line["what"] = e.begins ? "begin" : "end";
+    line["from_s"] = milli(e.which.begin_s);
+    line["to_s"] = milli(e.which.end_s);
+    if (!e.which.robots.empty()) line["robots"] = names(e.which.robots);
+  }
   void write(Json& line, const explorer::AuctionRecord& e) const {
     line["event"] = "auction";
     line["opener"] = name(e.round.opener);

@@ -10,6 +10,7 @@
 #include "decision/traffic.hpp"
 #include "explorer/coordinator.hpp"
 #include "link/bus.hpp"
+#include "link/radio.hpp"
 #include "world/body.hpp"
 #include "world/team_map.hpp"
 
@@ -48,9 +49,13 @@ struct PhaseEvent {
 };
 struct FaultEvent {
   RobotId robot;
-  const char* what;  ///< "kill", "revive", "slow"
+  const char* what;  ///< "kill", "revive", "slow", "deaf", "hears again"
 };
-using Event = std::variant<GoalEvent, TaskEndEvent, PhaseEvent, FaultEvent, AuctionRecord>;
+struct BreakEvent {
+  link::Break which;
+  bool begins;  ///< or ends
+};
+using Event = std::variant<GoalEvent, TaskEndEvent, PhaseEvent, FaultEvent, BreakEvent, AuctionRecord>;
 using EventSink = std::function<void(double t, const Event&)>;
 
 /// One robot of the team. Owns its map and its coordinator; body, bus and mapper come from outside.

@@ -18,8 +18,11 @@ class Mission {
   Mission(const OccupancyGrid& truth, const std::vector<RobotSpec>& team, const MissionSettings& settings)
       : settings_(settings),
         simulator_(truth, team, settings.sim),
-        ether_(static_cast<int>(team.size()), settings.link ? settings.link : link::ideal_link()),
-        referee_(truth, team) {
+        referee_(truth, team),
+        radio_(settings.radio, referee_.expected_s(), truth,
+               [this](RobotId robot) { return simulator_.pose(robot).position(); }),
+        ether_(static_cast<int>(team.size()),
+               [this](RobotId from, RobotId to, double now_s) { return radio_(from, to, now_s); }) {
     const EventSink sink = [this](double t, const Event& event) {
       if (settings_.record_events) result_.events.push_back({t, event});
     };
@@ -38,6 +41,7 @@ class Mission {
       if (step > 0) simulator_.step();
       now_s_ = static_cast<double>(step) * settings_.sim.dt;
       inject_faults();
+      announce_breaks();
       tick();
       if (finished()) break;
       if (now_s_ >= most_s) {
@@ -122,9 +126,24 @@ class Mission {
           simulator_.revive(fault.robot);
           robots_[static_cast<std::size_t>(fault.robot)]->restart(now_s_);
           break;
+        case Fault::Kind::kDeaf:
+        case Fault::Kind::kHear:
+          what = fault.kind == Fault::Kind::kDeaf ? "deaf" : "hears again";
+          radio_.set_deaf(fault.robot, fault.kind == Fault::Kind::kDeaf);
+          break;
       }
       if (settings_.record_events) result_.events.push_back({now_s_, FaultEvent{fault.robot, what}});
     }
+  }
+
+  /// Notes the breaks that begin or end with this step.
+  void announce_breaks() {
+    if (!settings_.record_events) return;
+    for (const link::Break& b : radio_.breaks())
+      for (const bool begins : {true, false}) {
+        const double t = begins ? b.begin_s : b.end_s;
+        if (t > now_s_ - settings_.sim.dt && t <= now_s_) result_.events.push_back({now_s_, BreakEvent{b, begins}});
+      }
   }
 
   /// Sets the status when the mission is over.
@@ -181,8 +200,9 @@ class Mission {
 
   const MissionSettings& settings_;
   sim::Simulator simulator_;
-  link::Ether ether_;
   Referee referee_;
+  link::Radio radio_;
+  link::Ether ether_;
   std::vector<std::unique_ptr<Explorer>> robots_;
   MissionResult result_;
   std::vector<char> close_;  // n x n: closer than kClose in the last step

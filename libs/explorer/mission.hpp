@@ -11,13 +11,14 @@
 
 #include "explorer/explorer.hpp"
 #include "link/ether.hpp"
+#include "link/radio.hpp"
 #include "sim/simulator.hpp"
 #include "sim/world.hpp"
 
 namespace outrider::explorer {
 
 struct Fault {
-  enum class Kind { kKill, kRevive, kSlow };
+  enum class Kind { kKill, kRevive, kSlow, kDeaf, kHear };
   Kind kind = Kind::kKill;
   RobotId robot = 0;
   double t = 0.0;        ///< [s]
@@ -32,7 +33,7 @@ struct MissionSettings {
   double until = 1.0;             ///< stop when this fraction of the reachable area has been seen; 1: go on to the end
   double max_time_s = 0.0;        ///< 0: ten times what one slow robot would need to drive over everything
   std::vector<Fault> faults;      ///< time ascending
-  link::LinkModel link;           ///< empty: ideal
+  link::RadioSpec radio;          ///< default: ideal
   bool record_events = true;
 };
 

@@ -124,6 +124,16 @@ double Referee::patience_s() const {
   return 10.0 * (area / std::max(truth_.geometry().resolution, 2.0 * width) + across) / slowest;
 }
 
+double Referee::expected_s() const {
+  double sweep = 0.0, speed = 0.0;
+  for (const auto& robot : robots_) {
+    sweep += robot.spec.speed * robot.spec.range;
+    speed += robot.spec.speed / static_cast<double>(robots_.size());
+  }
+  const double area = static_cast<double>(reachable_cells_) * truth_.geometry().cell_area();
+  return area / sweep + truth_.geometry().resolution * (truth_.width() + truth_.height()) / speed;
+}
+
 void Referee::conclude(const std::vector<OccupancyGrid>& maps, MissionResult& result) {
   result.explored_fraction = explored_fraction();
   result.reachable_m2 = static_cast<double>(reachable_cells_) * truth_.geometry().cell_area();

@@ -21,6 +21,9 @@ class Referee {
   double explored_fraction() const;
   /// A generous limit: ten times what the slowest robot alone would need to sweep everything [s].
   double patience_s() const;
+  /// About how long the mission will take [s]: the team sweeps the reachable area in strips one sensing range wide, and
+  /// a robot of mean speed drives once along two sides of the map. Random breaks fall into this time.
+  double expected_s() const;
   const MissionRobot& robot(RobotId robot) const { return robots_[static_cast<std::size_t>(robot)]; }
   /// Fills the team's parts of the result; `maps` are the robots' own at the end.
   void conclude(const std::vector<OccupancyGrid>& maps, MissionResult& result);

@@ -90,7 +90,7 @@ TEST_P(EveryCoordinator, ExploresWithoutAnyRadio) {
   const sim::World world = sim::parse_world(kTwoRooms, "two rooms");
   MissionSettings settings;
   settings.coordinator = GetParam();
-  settings.link = [](RobotId, RobotId, double) { return std::optional<double>(); };
+  settings.radio.none = true;
   const auto team = team_for(world, 2);
   const auto result = run_mission(world.map, team, settings);
   EXPECT_EQ(result.status, MissionStatus::kExplored);

@@ -130,9 +130,12 @@ TEST_F(BadInput, NamesAndFlagsSuggestTheNearest) {
 TEST_F(BadInput, FaultsAndComms) {
   for (const char* spec :
        {"kill", "kill:", "kill:robot1", "kill:robot1@", "kill:robot1@-1", "kill:robot1@nan", "kill:robot1@3:4",
-        "kil:robot1@3", "kill:robot9@3", "slow:robot1@3", "slow:robot1@3:x", "kill:robot1@3,,kill:robot2@3"})
+        "kil:robot1@3", "kill:robot9@3", "slow:robot1@3", "slow:robot1@3:x", "kill:robot1@3,,kill:robot2@3",
+        "deaf:robot1@3", "deaf:robot1@3-2", "deaf:robot1@3-4-5", "deaf:robot7@3-4"})
     expect_refused({"explore", "office1", "--fault", spec}, {"--fault"});
-  for (const char* spec : {"", "idel", "none,ideal", "range:x", "loss:2"})
+  for (const char* spec : {"", "idel", "none,ideal", "range:x", "range", "range:-1", "range:nan", "loss:2", "loss:", "delay:1x",
+        "breaks:5", "breaks:0x5", "breaks:5x-1", "breaks:5x25@100", "break:5", "break:9-5", "break:5-9:robot77",
+        "split:5-9", "ideal,,los", "los:3"})
     expect_refused({"explore", "office1", "--comms", spec}, {"--comms"});
 }
 
