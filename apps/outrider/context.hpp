@@ -40,6 +40,7 @@ CLI::Validator number_in(double low, double high);
 void add_explore(CLI::App& app, Context& ctx);
 void add_replay(CLI::App& app, Context& ctx);
 void add_report(CLI::App& app, Context& ctx);
+void add_bench(CLI::App& app, Context& ctx);
 void add_map(CLI::App& app, Context& ctx);
 void add_list(CLI::App& app, Context& ctx);
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench.hpp"
 #include "context.hpp"
 #include "explorer/coordinator.hpp"
 #include "sim/world.hpp"
@@ -20,6 +21,8 @@ Lines lines_of(const std::string& what) {
     for (const auto& info : explorer::coordinators()) lines.emplace_back(info.name, info.one_line);
   } else if (what == "worlds") {
     for (const auto& info : sim::embedded_world_infos()) lines.emplace_back(info.name, info.one_line);
+  } else if (what == "benches") {
+    for (const auto& info : benches()) lines.emplace_back(info.name, info.one_line);
   } else if (what == "slam") {
     for (const auto& [name, one_line] : slam_glue::slam_methods()) lines.emplace_back(name, one_line);
   }
@@ -41,9 +44,9 @@ void list(const std::string& what, const Context& ctx) {
 
 void add_list(CLI::App& app, Context& ctx) {
   auto what = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("list", "what there is: coordinators, worlds, slam methods");
-  verb->add_option("WHAT", *what, "coordinators, worlds or slam")
-      ->required()->check(CLI::IsMember({"coordinators", "worlds", "slam"}));
+  CLI::App* verb = app.add_subcommand("list", "what there is: coordinators, worlds, benches, slam methods");
+  verb->add_option("WHAT", *what, "coordinators, worlds, benches or slam")
+      ->required()->check(CLI::IsMember({"coordinators", "worlds", "benches", "slam"}));
   add_output_flags(*verb, ctx);
   verb->callback([what, &ctx] { list(*what, ctx); });
 }

@@ -84,6 +84,14 @@ std::string usage_hint(const CLI::App& app, const std::vector<std::string>& argv
     return fmt::format("unknown verb '{}'{}", argv[1], suggestion(argv[1], verbs));
   }
   if (verb == nullptr) verb = &app;
+  if (const auto subs = verb->get_subcommands(nullptr); !subs.empty() && argv.size() > 2) {
+    std::vector<std::string> names;
+    for (const auto* sub : subs) names.push_back(sub->get_name());
+    const CLI::App* sub = verb_called(*verb, argv[2]);
+    if (sub == nullptr && !argv[2].starts_with("-") && argv.size() > 1 && verb != &app)
+      return fmt::format("unknown {} '{}'{}", argv[1], argv[2], suggestion(argv[2], names));
+    if (sub != nullptr) verb = sub;
+  }
   std::vector<std::string> flags;
   for (const auto* option : verb->get_options())
     for (const auto& name : option->get_lnames()) flags.push_back("--" + name);
@@ -108,6 +116,7 @@ int run(int argc, char** argv) {
   add_explore(app, ctx);
   add_replay(app, ctx);
   add_report(app, ctx);
+  add_bench(app, ctx);
   add_map(app, ctx);
   add_list(app, ctx);
   try {

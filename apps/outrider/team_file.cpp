@@ -85,20 +85,20 @@ RobotSpec read_robot(const Reader& reader, const YAML::Node& node, std::size_t i
   return robot;
 }
 
-/// Dai 2014, section 5: speeds 3, 4, 3, 2 and ranges 4, 8, 3, 4.
+}  // namespace
+
 std::vector<RobotSpec> dai_team(double resolution) {
   constexpr std::array<double, 4> kSpeed{3, 4, 3, 2}, kRange{4, 8, 3, 4};
   const bool coarse = resolution >= 0.5;
   std::vector<RobotSpec> team(4);
   for (std::size_t i = 0; i < 4; ++i) {
+    team[i].name = fmt::format("R{}", i + 1);
     team[i].speed = kSpeed[i] * (coarse ? resolution : 0.2);
     team[i].range = kRange[i] * (coarse ? resolution : 1.0);
-    team[i].radius = coarse ? 0.3 * resolution : 0.2;
+    team[i].radius = coarse ? 0.45 * resolution : 0.2;
   }
   return team;
 }
-
-}  // namespace
 
 TeamFile read_team_file(const std::filesystem::path& path) {
   const Reader reader(path);

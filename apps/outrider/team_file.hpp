@@ -24,6 +24,10 @@ TeamFile read_team_file(const std::filesystem::path& path);
 /// an indoor robot of 0.6 m/s. `n` = 0: the usual size.
 TeamFile usual_team(const sim::World& world, int n);
 
+/// Dai 2014's team R1 to R4 for cells of this size: speeds 3, 4, 3, 2 and ranges 4, 8, 3, 4 in cells when these are
+/// coarser than 0.5 m, else scaled to an indoor robot of 0.6 m/s. Without starts.
+std::vector<RobotSpec> dai_team(double resolution);
+
 /// Gives every robot a start pose. Throws InputError when there is no room.
 std::vector<RobotSpec> place_team(const sim::World& world, TeamFile team);
 

@@ -1,0 +1,74 @@
+#pragma once
+// Published experiments. A bench is one file, bench_NAME.cpp: it declares its cases, algorithms, metrics and published
+// figures, and a function from one trial to its metrics. The runner here does the rest: threads, shards, tables.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "context.hpp"
+#include "report/bench_result.hpp"
+
+namespace outrider::app {
+
+/// One cell of an experiment.
+struct Trial {
+  std::string case_name;
+  int number = 1;           ///< from 1
+  std::string algorithm;
+  std::uint64_t seed = 0;   ///< of (command's seed, case, number): the same for every algorithm, so that trials pair
+  const std::atomic<bool>* interrupted = nullptr;  ///< when set, return soon; the row is dropped
+};
+
+struct Outcome {
+  report::Metrics metrics;                      ///< a subset of the design's; nullopt: never reached
+  report::Json extra = report::Json::object();  ///< further keys of the row
+};
+
+struct Experiment {
+  report::BenchDesign design;
+  /// Called from several threads at once; the outcome follows from the trial alone. Nothing: the algorithm does not
+  /// apply to this case, and there is no row.
+  std::function<std::optional<Outcome>(const Trial&)> run;
+  bool serial = false;  ///< measures wall-clock time: one trial at a time, whatever --jobs
+};
+
+struct BenchArguments {
+  std::optional<int> trials;  ///< --trials
+  std::uint64_t seed = 1;     ///< --seed
+};
+using BuildExperiment = std::function<Experiment(const BenchArguments&)>;
+
+struct BenchInfo {
+  std::string name;
+  std::string one_line;
+  /// Adds the bench's own options to its command line; what it returns is called once these are read.
+  BuildExperiment (*declare)(CLI::App& verb) = nullptr;
+  std::vector<report::Table> (*tables)(const report::BenchResult&) = nullptr;  ///< the paper's layout, shown first
+  std::string (*figures)(const report::BenchResult&) = nullptr;               ///< HTML
+};
+
+/// All benches, in the order of `outrider list benches`.
+const std::vector<BenchInfo>& benches();
+
+/// Part `index` of `of` (from 1) of all trials; a trial's algorithms stay together.
+struct Shard {
+  int index = 1;
+  int of = 1;
+};
+
+/// Runs an experiment on `jobs` threads. The result does not depend on `jobs`; `progress(done, all)` is called by one
+/// thread at a time. What a trial throws ends the run and comes out here.
+report::BenchResult run_experiment(const Experiment& experiment, std::uint64_t seed, int jobs, Shard shard,
+                                   const std::atomic<bool>& interrupted,
+                                   const std::function<void(std::size_t, std::size_t)>& progress);
+
+/// The seed of a trial: of the command's seed, the case and the number.
+std::uint64_t trial_seed(std::uint64_t seed, const std::string& case_name, int number);
+
+// One file a bench.
+BenchInfo bench_dai2014();
+
+}  // namespace outrider::app
