@@ -24,6 +24,7 @@ Explorer::Explorer(RobotId self, RobotSpec spec, const GridGeometry& geometry, c
       coordinator_(std::move(coordinator)),
       sink_(std::move(sink)),
       map_(geometry),
+      exchange_(self, map_, {.silent_after = settings.silent_after}),
       seen_(geometry),
       passable_(geometry, spec_.radius),
       traffic_(geometry, spec_.radius),
@@ -44,7 +45,7 @@ void Explorer::sense(double now_s) {
     board_.note_changes(changed_);
     map_news_s_ = now_s;
   }
-  share(now_s);
+  share();
 }
 
 void Explorer::take_in(const Sensing& sensing) {
@@ -64,9 +65,13 @@ void Explorer::take_in(const Sensing& sensing) {
     if (mapper_->states()[index] != CellState::kUnknown) see(index, mapper_->states()[index]);
 }
 
-void Explorer::share(double now_s) {
-  if (auto cells = map_.take_to_share(); !cells.empty()) bus_.send(MapUpdate{self_, ++seq_, std::move(cells)});
-  if (status_news_ || now_s >= status_due_s_) send_status(now_s);
+void Explorer::share() {
+  const auto runs = map_.take_to_share();
+  for (std::size_t k = 0; k < runs.size(); k += MapUpdate::kMostRuns) {
+    const auto begin = runs.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto end = runs.begin() + static_cast<std::ptrdiff_t>(std::min(runs.size(), k + MapUpdate::kMostRuns));
+    bus_.send(MapUpdate{self_, ++seq_, {begin, end}});
+  }
 }
 
 void Explorer::send_status(double now_s) {
@@ -81,6 +86,7 @@ void Explorer::send_status(double now_s) {
   status.done = phase_ != Phase::kExploring;
   status.priority = priority_;
   status.asks = asks_;
+  status.map_hash = map_.hash();
   bus_.send(std::move(status));
   status_news_ = false;
   status_due_s_ = now_s + settings_.status_period;
@@ -101,14 +107,15 @@ bool Explorer::listen(double now_s) {
 
 void Explorer::hear(const link::Delivery& delivery, double now_s) {
   const Message& message = *delivery.message;
+  exchange_.hear(message, now_s);
   if (const auto* update = std::get_if<MapUpdate>(&message)) {
-    for (const CellChange& change : update->cells) map_.merge(change);
+    for (const CellRun& run : update->runs) map_.merge(run);
   } else if (const auto* status = std::get_if<StatusMessage>(&message)) {
     auto mate = std::lower_bound(team_.begin(), team_.end(), status->robot,
                                  [](const Teammate& t, RobotId robot) { return t.robot < robot; });
     if (mate == team_.end() || mate->robot != status->robot) mate = team_.insert(mate, Teammate{status->robot, {}, 0.0});
     *mate = Teammate{status->robot, *status, now_s};
-  } else {
+  } else if (!is_map_traffic(message)) {
     inbox_.push_back(delivery);
   }
 }
@@ -124,7 +131,9 @@ void Explorer::act(double now_s) {
   }
   give_way(now_s);
   resolve_block(now_s);
-  if (status_news_) send_status(now_s);
+  if (status_news_ || now_s >= status_due_s_) send_status(now_s);
+  for (Message& message : exchange_.speak(now_s)) bus_.send(std::move(message));
+  settled_ = exchange_.settled(now_s);
 }
 
 void Explorer::check_task(double now_s) {

@@ -9,6 +9,7 @@
 
 #include "decision/traffic.hpp"
 #include "explorer/coordinator.hpp"
+#include "explorer/map_exchange.hpp"
 #include "link/bus.hpp"
 #include "link/radio.hpp"
 #include "world/body.hpp"
@@ -72,7 +73,8 @@ class Explorer {
   /// Decides where to go when that is due, and drives.
   void act(double now_s);
 
-  bool done() const { return phase_ == Phase::kDone; }    ///< nothing left, and home if asked to return
+  /// Nothing left, home if asked to return, and everybody in reach knows the same.
+  bool done() const { return phase_ == Phase::kDone && settled_; }
   bool exploring() const { return phase_ == Phase::kExploring; }
   bool under_way() const { return task_.has_value(); }
   const OccupancyGrid& map() const { return map_.states(); }
@@ -90,7 +92,7 @@ class Explorer {
   enum class Phase { kExploring, kReturning, kDone };
 
   void take_in(const Sensing& sensing);
-  void share(double now_s);
+  void share();
   void send_status(double now_s);
   void hear(const link::Delivery& delivery, double now_s);
   void run_coordinator(double now_s);
@@ -125,6 +127,7 @@ class Explorer {
   EventSink sink_;
 
   TeamMap map_;
+  MapExchange exchange_;
   Grid<std::uint8_t> seen_;            // 1 where the own sensor saw the cell
   decision::Passability passable_;
   decision::Traffic traffic_;
@@ -151,6 +154,7 @@ class Explorer {
   double period_begin_s_ = 0.0;
   double status_due_s_ = 0.0;
   bool status_news_ = true;
+  bool settled_ = true;
 
   double blocked_since_s_ = -1.0;      // < 0: not blocked
   double last_try_s_ = -1e9;

@@ -10,7 +10,10 @@ constexpr std::size_t kPose = 24, kCell = 8, kRound = 8;
 
 struct SizeOf {
   std::size_t operator()(const StatusMessage& m) const { return kHeader + kPose + 2 * kCell + 40 + m.way.size() * kCell; }
-  std::size_t operator()(const MapUpdate& m) const { return kHeader + m.cells.size() * 6; }
+  std::size_t operator()(const MapUpdate& m) const { return kHeader + m.runs.size() * 6; }
+  std::size_t operator()(const MapDigest& m) const { return kHeader + 4 + m.marks.size() * 8; }
+  std::size_t operator()(const TileRequest& m) const { return kHeader + m.tiles.size() * 4; }
+  std::size_t operator()(const MapTile& m) const { return kHeader + 4 + m.cells.size(); }
   std::size_t operator()(const RoundOpen&) const { return kHeader + kRound; }
   std::size_t operator()(const BidSheet& m) const { return kHeader + kRound + kPose + 34 + m.entries.size() * 24; }
   std::size_t operator()(const Awards& m) const {

@@ -26,21 +26,58 @@ struct StatusMessage {
   bool done = false;             ///< knows of nothing left to explore
   int priority = 0;              ///< in narrow places: the lower goes first (inherited by who makes room for it)
   std::optional<RobotId> asks;   ///< the team-mate that is asked to make room
+  std::uint64_t map_hash = 0;    ///< TeamMap::hash()
   static constexpr std::size_t kMaxWay = 64;
 };
 
-/// One cell of the sender's team map. A higher version replaces a lower one; at equal versions the greater state
-/// wins (occupied > free > unknown), so merging is commutative, associative and idempotent.
-struct CellChange {
-  std::uint32_t index = 0;
-  CellState state = CellState::kUnknown;
-  std::uint8_t version = 0;
+/// A frame on the air carries at most this much, messages are made to fit [bytes].
+inline constexpr std::size_t kMostMessageBytes = 1200;
+
+/// Cells of the sender's team map that follow each other in a row and are known alike. `value` is version * 4 + state;
+/// the greater value wins (a higher version; at equal versions occupied > free > unknown).
+struct CellRun {
+  std::uint32_t index = 0;   ///< of the first cell
+  std::uint8_t length = 0;   ///< [cells]
+  std::uint8_t value = 0;
 };
 
+/// News from the sender's own sensor.
 struct MapUpdate {
   RobotId robot = 0;
   std::uint32_t seq = 0;
-  std::vector<CellChange> cells;
+  std::vector<CellRun> runs;  ///< at most kMostRuns
+  static constexpr std::size_t kMostRuns = 180;
+};
+
+/// A tile of the map in short. The weight is the sum of all values and grows with everything learnt: of two different
+/// tiles the heavier one knows something that the other does not, and so do both when they weigh the same.
+struct TileMark {
+  std::uint32_t weight = 0;
+  std::uint32_t hash = 0;
+  friend bool operator==(const TileMark&, const TileMark&) = default;
+};
+
+/// What the sender knows, a stretch of tiles; those not named in any stretch it knows nothing of.
+struct MapDigest {
+  RobotId robot = 0;
+  std::uint32_t first = 0;      ///< number of the first tile
+  std::vector<TileMark> marks;  ///< at most kMostMarks
+  static constexpr std::size_t kMostMarks = 128;
+};
+
+/// "Send me these tiles."
+struct TileRequest {
+  RobotId robot = 0;
+  RobotId to = 0;
+  std::vector<std::uint32_t> tiles;  ///< at most kMostTiles
+  static constexpr std::size_t kMostTiles = 256;
+};
+
+/// All that the sender knows of a tile.
+struct MapTile {
+  RobotId robot = 0;
+  std::uint32_t tile = 0;
+  std::vector<std::uint8_t> cells;  ///< values, row by row; at most 1024
 };
 
 /// Identifies an auction round: the robot that opened it and its counter.
@@ -90,6 +127,12 @@ struct Awards {
   std::vector<Award> awards;
 };
 
-using Message = std::variant<StatusMessage, MapUpdate, RoundOpen, BidSheet, Awards>;
+using Message = std::variant<StatusMessage, MapUpdate, MapDigest, TileRequest, MapTile, RoundOpen, BidSheet, Awards>;
+
+/// Messages that only serve to keep maps equal.
+inline bool is_map_traffic(const Message& message) {
+  return std::holds_alternative<MapUpdate>(message) || std::holds_alternative<MapDigest>(message) ||
+         std::holds_alternative<TileRequest>(message) || std::holds_alternative<MapTile>(message);
+}
 
 }  // namespace outrider
