@@ -7,6 +7,7 @@
 
 #include "comms_spec.hpp"
 #include "context.hpp"
+#include "explore.hpp"
 #include "explorer/mission.hpp"
 #include "mission_record.hpp"
 #include "progress.hpp"
@@ -24,19 +25,7 @@ using explorer::MissionResult;
 using explorer::MissionSettings;
 using report::Json;
 
-struct Options {
-  std::string world = "office";
-  std::optional<double> resolution;
-  int robots = 0;
-  std::filesystem::path team_file;
-  std::string coordinator = "daa", comms = "ideal", sensing = "disc", localization = "perfect", fault;
-  double until = 1.0, max_time = 0.0, range_noise = 0.0;
-  bool return_home = false, octomap = false;
-  auction::BidParameters bids;
-  std::string turn = "best-bid";
-};
-
-MissionSettings mission_settings(const Options& o, const Context& ctx, const std::vector<RobotSpec>& team) {
+MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, const std::vector<RobotSpec>& team) {
   MissionSettings settings;
   settings.coordinator = o.coordinator;
   explorer::make_coordinator(o.coordinator, {});  // an unknown name stops here, before any work
@@ -47,16 +36,16 @@ MissionSettings mission_settings(const Options& o, const Context& ctx, const std
   settings.explorer.return_home = o.return_home;
   settings.sim.lidar = o.sensing == "lidar";
   settings.sim.range_noise = o.range_noise;
-  settings.sim.seed = ctx.seed;
+  settings.sim.seed = seed;
   settings.until = o.until;
   settings.max_time_s = o.max_time;
   settings.faults = parse_faults(o.fault, team);
   settings.radio = parse_comms(o.comms, team);
-  settings.radio.seed = ctx.seed;
+  settings.radio.seed = seed;
   return settings;
 }
 
-Json configuration(const Options& o, const MissionSettings& s) {
+Json configuration(const ExploreOptions& o, const MissionSettings& s) {
   return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms}, {"sensing", o.sensing},
           {"localization", o.localization}, {"until", o.until}, {"max_time_s", o.max_time},
           {"return_home", o.return_home}, {"fault", o.fault}, {"step_s", s.sim.dt}, {"range_noise_m", o.range_noise},
@@ -99,39 +88,18 @@ void print_summary(const report::RunRecord& record, const Json& result, const Co
   fmt::print("{}\n", ctx.out.empty() ? std::string() : fmt::format("; report: {}", (ctx.out / "report.html").string()));
 }
 
-MissionResult run(const sim::World& world, const std::vector<RobotSpec>& team, const MissionSettings& settings,
-                  const Options& o, const Context& ctx) {
+report::RunRecord run_shown(const ExploreOptions& o, const Context& ctx) {
   Progress progress("exploring", ctx.quiet);
-  try {
-    return explorer::run_mission(world.map, team, settings, [&](double now_s, double fraction) {
-      progress.update(fraction, fmt::format("{:.0f} s simulated", now_s));
-      return !ctx.interrupted->load();
-    });
-  } catch (const InputError& e) {  // an impossible start: say whose
-    if (o.team_file.empty()) throw;
-    throw InputError(fmt::format("{}: {}", o.team_file.string(), e.what()));
-  }
+  return run_exploration(o, open_exploration_world(o), ctx.seed, true, [&](double now_s, double done) {
+    progress.update(done, fmt::format("{:.0f} s simulated", now_s));
+    return !ctx.interrupted->load();
+  });
 }
 
-void explore(const Options& o, Context& ctx) {
+void explore(const ExploreOptions& o, Context& ctx) {
   if (!ctx.out.empty()) report::check_out_dir(ctx.out, ctx.force);
-  sim::World world = open_world(o.world, o.resolution);
-  world.map = explorer::solid_map(std::move(world.map));
-  const std::vector<RobotSpec> team =
-      place_team(world, o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file));
-  const MissionSettings settings = mission_settings(o, ctx, team);
-  const auto begin = std::chrono::steady_clock::now();
-  MissionResult result = run(world, team, settings, o, ctx);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  Json times = timing(wall.count(), result);
-  report::RunRecord record = mission_record(std::move(result), settings, world.map);
-  record.version = OUTRIDER_VERSION;
+  report::RunRecord record = run_shown(o, ctx);
   record.command = ctx.argv;
-  record.seed = ctx.seed;
-  record.world = world_json(world);
-  record.comms = o.comms;
-  record.configuration = configuration(o, settings);
-  record.timing = std::move(times);
   if (!ctx.out.empty())
     report::write_run_folder(record, ctx.out, {ctx.force},
                              [&](const auto& folder) { write_maps(record, folder, o.octomap); });
@@ -143,45 +111,81 @@ void explore(const Options& o, Context& ctx) {
 
 }  // namespace
 
-void add_explore(CLI::App& app, Context& ctx) {
-  auto o = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("explore", "a simulated team explores an unknown world");
-  verb->add_option("WORLD", o->world, "name from 'outrider list worlds', or a map: ROS .yaml, image, .gridmap[.gz], "
+sim::World open_exploration_world(const ExploreOptions& o) {
+  sim::World world = open_world(o.world, o.resolution);
+  world.map = explorer::solid_map(std::move(world.map));
+  return world;
+}
+
+report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& world, std::uint64_t seed,
+                                  bool record_events, const explorer::MissionProgress& progress) {
+  const std::vector<RobotSpec> team =
+      place_team(world, o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file));
+  MissionSettings settings = mission_settings(o, seed, team);
+  settings.record_events = record_events;
+  const auto begin = std::chrono::steady_clock::now();
+  MissionResult result;
+  try {
+    result = explorer::run_mission(world.map, team, settings, progress);
+  } catch (const InputError& e) {  // an impossible start: say whose
+    if (o.team_file.empty()) throw;
+    throw InputError(fmt::format("{}: {}", o.team_file.string(), e.what()));
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  Json times = timing(wall.count(), result);
+  report::RunRecord record = mission_record(std::move(result), settings, world.map);
+  record.version = OUTRIDER_VERSION;
+  record.seed = seed;
+  record.world = world_json(world);
+  record.comms = o.comms;
+  record.configuration = configuration(o, settings);
+  record.timing = std::move(times);
+  return record;
+}
+
+void add_explore_options(CLI::App& verb, ExploreOptions& o) {
+  verb.add_option("WORLD", o.world, "name from 'outrider list worlds', or a map: ROS .yaml, image, .gridmap[.gz], "
                    "MovingAI .map, ASCII .txt")->capture_default_str();
-  verb->add_option("--resolution", o->resolution, "edge of a cell for images, .map and .txt [m]")
+  verb.add_option("--resolution", o.resolution, "edge of a cell for images, .map and .txt [m]")
       ->check(number_in(1e-3, 1e3))->type_name("M");
-  auto* robots = verb->add_option("--robots", o->robots, "size of the team (default: the world's usual team)")
+  auto* robots = verb.add_option("--robots", o.robots, "size of the team (default: the world's usual team)")
                      ->check(CLI::Range(1, 1000))->type_name("N");
-  verb->add_option("--team", o->team_file, "team file (YAML)")->type_name("FILE")->excludes(robots);
-  verb->add_option("--coordinator", o->coordinator, "who goes where; see 'outrider list coordinators'")
+  verb.add_option("--team", o.team_file, "team file (YAML)")->type_name("FILE")->excludes(robots);
+  verb.add_option("--coordinator", o.coordinator, "who goes where; see 'outrider list coordinators'")
       ->capture_default_str()->type_name("NAME");
-  verb->add_option("--comms", o->comms, "radio: ideal, none, range:R, los, loss:P, delay:S, breaks:NxS[@WITHIN], "
+  verb.add_option("--comms", o.comms, "radio: ideal, none, range:R, los, loss:P, delay:S, breaks:NxS[@WITHIN], "
                    "break:T0-T1[:A+B], split:T0-T1:A+B; comma-separated")->capture_default_str()->type_name("SPEC");
-  verb->add_option("--sensing", o->sensing, "disc: every cell in range and sight; lidar: simulated scans")
+  verb.add_option("--sensing", o.sensing, "disc: every cell in range and sight; lidar: simulated scans")
       ->check(CLI::IsMember({"disc", "lidar"}))->capture_default_str()->type_name("KIND");
-  verb->add_option("--localization", o->localization, "perfect (odometry and slam are to come)")
+  verb.add_option("--localization", o.localization, "perfect (odometry and slam are to come)")
       ->check(CLI::IsMember({"perfect"}))->capture_default_str()->type_name("KIND");
-  verb->add_option("--range-noise", o->range_noise, "standard deviation of a lidar range [m]")
+  verb.add_option("--range-noise", o.range_noise, "standard deviation of a lidar range [m]")
       ->check(number_in(0.0, 10.0))->capture_default_str()->type_name("M");
-  verb->add_option("--until", o->until, "stop when this fraction of the reachable area has been seen")
+  verb.add_option("--until", o.until, "stop when this fraction of the reachable area has been seen")
       ->check(number_in(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
-  verb->add_option("--max-time", o->max_time, "stop after this much simulated time [s] (default: a generous limit)")
+  verb.add_option("--max-time", o.max_time, "stop after this much simulated time [s] (default: a generous limit)")
       ->check(number_in(1e-3, 1e9))->type_name("S");
-  verb->add_flag("--return-home", o->return_home, "drive back to the starts in the end");
-  verb->add_option("--fault", o->fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR, deaf:ROBOT@T0-T1; "
+  verb.add_flag("--return-home", o.return_home, "drive back to the starts in the end");
+  verb.add_option("--fault", o.fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR, deaf:ROBOT@T0-T1; "
                    "comma-separated")
       ->type_name("SPEC");
-  verb->add_flag("--octomap", o->octomap, "also write map.bt (OctoMap)");
-  verb->add_option("--rho", o->bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")
+  verb.add_flag("--octomap", o.octomap, "also write map.bt (OctoMap)");
+  verb.add_option("--rho", o.bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")
       ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb->add_option("--gamma", o->bids.gamma, "ia, ea, daa: influence of robots without target (eq. 2)")
+  verb.add_option("--gamma", o.bids.gamma, "ia, ea, daa: influence of robots without target (eq. 2)")
       ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb->add_option("--influence-weight", o->bids.weight, "ia, ea, daa: of U_p2 as a whole [m^2]")
+  verb.add_option("--influence-weight", o.bids.weight, "ia, ea, daa: of U_p2 as a whole [m^2]")
       ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb->add_option("--alpha", o->bids.alpha, "daa: expected utility per explored rate [s] (eq. 10)")
+  verb.add_option("--alpha", o.bids.alpha, "daa: expected utility per explored rate [s] (eq. 10)")
       ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb->add_option("--turn", o->turn, "ia, ea, daa, ta: whose bid is served next")
+  verb.add_option("--turn", o.turn, "ia, ea, daa, ta: whose bid is served next")
       ->check(CLI::IsMember({"best-bid", "robot-order"}))->capture_default_str();
+}
+
+void add_explore(CLI::App& app, Context& ctx) {
+  auto o = std::make_shared<ExploreOptions>();
+  CLI::App* verb = app.add_subcommand("explore", "a simulated team explores an unknown world");
+  add_explore_options(*verb, *o);
   add_run_flags(*verb, ctx);
   verb->callback([o, &ctx] { explore(*o, ctx); });
 }

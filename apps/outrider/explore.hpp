@@ -1,0 +1,40 @@
+#pragma once
+// A simulated exploration, from its flags to its record: what `explore` and `sweep` share.
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "auction/bid_rules.hpp"
+#include "explorer/mission.hpp"
+#include "report/run_record.hpp"
+#include "sim/world.hpp"
+
+namespace outrider::app {
+
+/// The flags of `explore` that determine a run; with a seed they determine all of its record but the timing.
+struct ExploreOptions {
+  std::string world = "office";
+  std::optional<double> resolution;
+  int robots = 0;
+  std::filesystem::path team_file;
+  std::string coordinator = "daa", comms = "ideal", sensing = "disc", localization = "perfect", fault;
+  double until = 1.0, max_time = 0.0, range_noise = 0.0;
+  bool return_home = false, octomap = false;
+  auction::BidParameters bids;
+  std::string turn = "best-bid";
+};
+
+/// Adds these flags, and WORLD, to a command line.
+void add_explore_options(CLI::App& verb, ExploreOptions& o);
+
+/// The world as the simulator takes it: what is unknown in a map is solid. Throws InputError.
+sim::World open_exploration_world(const ExploreOptions& o);
+
+/// Runs the mission that the flags ask for in `world`. Throws InputError when they do not fit together. Thread-safe.
+report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& world, std::uint64_t seed,
+                                  bool record_events, const explorer::MissionProgress& progress);
+
+}  // namespace outrider::app
