@@ -10,6 +10,7 @@ find_package(mrpt-obs REQUIRED)
 find_package(mrpt-io REQUIRED)
 find_package(mrpt-slam REQUIRED)
 find_package(octomap 1.9 REQUIRED)
+find_package(Ceres 2 REQUIRED)
 
 add_library(outrider_mrpt INTERFACE)
 target_link_libraries(outrider_mrpt INTERFACE mrpt::maps mrpt::obs mrpt::io mrpt::slam)

@@ -122,10 +122,32 @@ void print_summary(const slam_glue::SlamResult& slam, const std::string& evaluat
              ctx.out.empty() ? std::string() : fmt::format("; report: {}", (ctx.out / "report.html").string()));
 }
 
+/// Every loop closure, believed or not; times count from the first scan.
+Json closures_json(const slam_glue::SlamResult& slam) {
+  Json list = Json::array();
+  const double t0 = slam.log.first_t;
+  for (const auto& c : slam.closures)
+    list.push_back({{"t_from", c.t_from - t0}, {"t_to", c.t_to - t0},
+                    {"transform", {c.T_from_to.x, c.T_from_to.y, c.T_from_to.theta}},
+                    {"residual_m", c.residual_m}, {"residual_deg", c.residual_deg},
+                    {"share", c.share}, {"agreement", c.agreement}, {"accepted", c.accepted}, {"why", c.why}});
+  return list;
+}
+
 Json result_of(const slam_glue::SlamResult& slam, const std::string& method) {
+  std::vector<double> metres, degrees;
+  for (const auto& c : slam.closures)
+    if (c.accepted) metres.push_back(c.residual_m), degrees.push_back(c.residual_deg);
+  const std::size_t accepted = metres.size();
+  Json slam_json{{"method", method}, {"loop_closures", accepted}, {"refused", slam.closures.size() - accepted},
+                 {"keyframes", slam.keyframes}};
+  if (accepted > 0) {
+    slam_json["closure_residual_m"] = statistics_json(slam_glue::statistics(metres));
+    slam_json["closure_residual_deg"] = statistics_json(slam_glue::statistics(degrees));
+  }
+  slam_json["closures"] = closures_json(slam);
   return {{"status", slam.interrupted ? "interrupted" : "mapped"}, {"scans", slam.scans},
-          {"duration_s", slam.log.duration_s()}, {"path_m", slam.path_m},
-          {"slam", {{"method", method}, {"loop_closures", 0}, {"keyframes", slam.keyframes}}},
+          {"duration_s", slam.log.duration_s()}, {"path_m", slam.path_m}, {"slam", std::move(slam_json)},
           {"warnings", slam.warnings}};
 }
 

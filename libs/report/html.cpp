@@ -51,6 +51,35 @@ std::string left_html(const Json& result) {
          rows + "</tbody></table>\n</section>\n";
 }
 
+/// The loop closures of a replay, those with the largest residuals first; nothing for other runs.
+std::string closures_html(const Json& result) {
+  if (!result.contains("slam") || !result["slam"].contains("closures")) return "";
+  std::vector<Json> closures = result["slam"]["closures"].get<std::vector<Json>>();
+  if (closures.empty()) return "";
+  constexpr std::size_t kMost = 200;
+  const auto refused = [](const Json& c) { return !c.value("accepted", false); };
+  const auto count = std::count_if(closures.begin(), closures.end(), refused);
+  std::stable_sort(closures.begin(), closures.end(),
+                   [](const Json& a, const Json& b) { return a.value("residual_m", 0.0) > b.value("residual_m", 0.0); });
+  std::string html = fmt::format(
+      "<section>\n<h2>Loop closures</h2>\n<p>{} believed, {} refused{}. Residual: what the final trajectory leaves of "
+      "the measured transform.</p>\n<table class=\"list\"><thead><tr><th>scan at</th><th>seen before at</th>"
+      "<th class=\"number\">residual</th><th class=\"number\">points matched</th><th>believed</th></tr></thead>"
+      "<tbody>\n",
+      closures.size() - static_cast<std::size_t>(count), count,
+      closures.size() > kMost ? fmt::format("; the {} with the largest residuals are shown", kMost) : "");
+  closures.resize(std::min(closures.size(), kMost));
+  for (const Json& c : closures) {
+    const std::string why = plain_text(c.value("why", Json("")));
+    html += fmt::format("<tr><td>{:.1f} s</td><td>{:.1f} s</td><td class=\"number\">{:.3f} m, {:.2f}°</td>"
+                        "<td class=\"number\">{:.0f} %</td><td>{}</td></tr>\n",
+                        c.value("t_to", 0.0), c.value("t_from", 0.0), c.value("residual_m", 0.0),
+                        c.value("residual_deg", 0.0), 100.0 * c.value("share", 0.0),
+                        escape_html(why.empty() ? "yes" : "no: " + why));
+  }
+  return html + "</tbody></table>\n</section>\n";
+}
+
 /// Nested keys as "a.b"; lists on one line.
 void flatten(const Json& json, const std::string& prefix, std::string& rows) {
   if (json.is_object() && !json.empty()) {
@@ -153,7 +182,7 @@ std::string report_html(const RunRecord& record) {
                                            {"verdict", escape_html(verdict(run))},
                                            {"style", std::string(style_sheet())},
                                            {"figures", figures_html(run)},
-                                           {"left", left_html(run["result"])},
+                                           {"left", left_html(run["result"]) + closures_html(run["result"])},
                                            {"configuration", configuration_html(run)},
                                            {"command", escape_html(shell_command(record.command))},
                                            {"version", escape_html(record.version)},

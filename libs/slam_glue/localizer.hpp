@@ -1,11 +1,11 @@
 #pragma once
-// Internal: MRPT's two SLAM builders behind one interface, without MRPT's headers.
+// Internal: the SLAM methods behind one interface, without MRPT's headers.
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "slam_glue/logs.hpp"
+#include "slam_glue/slam.hpp"
 
 namespace outrider::slam_glue {
 
@@ -15,10 +15,13 @@ class Localizer {
   virtual ~Localizer() = default;
   /// Scans in the order of the log.
   virtual void add(const LogEntry& entry) = 0;
+  /// The log has ended.
+  virtual void finish() {}
   /// The final pose of every scan added, T_map_robot; the map frame is the robot's at the first scan.
   virtual std::vector<Pose2> poses() const = 0;
   /// Scans in the SLAM's own map so far.
   virtual std::size_t keyframes() = 0;
+  virtual std::vector<ClosureRecord> closures() const { return {}; }
 };
 
 /// Each keyframe makes MRPT rebuild the search tree of its map, so keyframes are few and the map thin: with 2.5 times
@@ -45,5 +48,8 @@ struct RbpfSettings {
 };
 /// Seeds MRPT's random generator of the calling thread.
 std::unique_ptr<Localizer> make_rbpf(const RbpfSettings& settings);
+
+/// Scan matching, loop closing and pose graph (graph_slam.hpp).
+std::unique_ptr<Localizer> make_graph(double max_range_m);
 
 }  // namespace outrider::slam_glue

@@ -26,6 +26,7 @@ class OdometryLocalizer : public Localizer {
 };
 
 std::unique_ptr<Localizer> make_localizer(const SlamOptions& options) {
+  if (options.method == "graph") return make_graph(options.max_range_m);
   if (options.method == "icp") {
     IcpSettings settings;
     settings.max_range_m = options.max_range_m;
@@ -80,10 +81,10 @@ SlamResult run_slam(const std::filesystem::path& log, const SlamOptions& options
   constexpr double kLocalizing = 0.95;  // its share of the work; the rest is the map
   GrowthWatch watch;
   ScanOdometry scan_odometry;
-  const bool as_logged = options.method == "odometry";
+  const bool as_logged = options.method == "odometry", graph = options.method == "graph";
   reader.read([&](LogEntry entry, double fraction) {
     // Wheels alone lead ICP and the particle filter astray: see ScanOdometry.
-    if (!as_logged) entry.odometry = scan_odometry.add(entry);
+    if (!as_logged && !graph) entry.odometry = scan_odometry.add(entry);
     localizer->add(entry);
     watch.see(entry.odometry, localizer->keyframes());
     result.trajectory.push_back({entry.scan.t, {}});
@@ -92,7 +93,9 @@ SlamResult run_slam(const std::filesystem::path& log, const SlamOptions& options
     return !result.interrupted;
   });
   result.scans = result.trajectory.size();
+  localizer->finish();
   result.keyframes = localizer->keyframes();
+  result.closures = localizer->closures();
   const std::vector<Pose2> poses = localizer->poses();
   const Pose2 T_map_slam = options.start ? *options.start * inverse(poses.front()) : Pose2{};
   for (std::size_t i = 0; i < poses.size(); ++i) result.trajectory[i].pose = T_map_slam * poses[i];
@@ -110,7 +113,8 @@ SlamResult run_slam(const std::filesystem::path& log, const SlamOptions& options
 }
 
 std::vector<SlamMethod> slam_methods() {
-  return {{"icp", "scan matching against a growing points map (MRPT CMetricMapBuilderICP)"},
+  return {{"graph", "point-to-line scan matching, checked loop closures, pose graph (Ceres)"},
+          {"icp", "scan matching against a growing points map (MRPT CMetricMapBuilderICP)"},
           {"rbpf", "Rao-Blackwellised particle filter with scan matching (MRPT CMetricMapBuilderRBPF)"},
           {"odometry", "poses as logged; mapping only"}};
 }

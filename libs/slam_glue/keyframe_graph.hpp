@@ -1,0 +1,55 @@
+#pragma once
+// Internal: the scans that a SLAM remembers, and what is known of where they were taken from.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "slam_glue/pose_graph.hpp"
+#include "slam_glue/surface_points.hpp"
+#include "world/scan.hpp"
+
+namespace outrider::slam_glue {
+
+struct Keyframe {
+  std::size_t session = 0;  ///< which log or robot
+  std::size_t index = 0;    ///< of the scan in its session
+  double t = 0.0;           ///< [s]
+  double path_m = 0.0;      ///< driven in its session before [m]
+  LaserScan scan;
+  std::vector<SurfacePoint> points;  ///< robot frame
+  Point view;                        ///< middle of what it sees, robot frame
+};
+
+/// Makes a keyframe's points and view from its scan.
+Keyframe make_keyframe(const LaserScan& scan, double max_range_m);
+
+struct KeyframeGraph {
+  std::vector<Keyframe> frames;
+  std::vector<Pose2> poses;  ///< T_map_robot of every frame
+  std::vector<PoseEdge> edges;
+
+  std::size_t size() const { return frames.size(); }
+  /// Frames of k's session from k - before to k + after.
+  std::pair<std::size_t, std::size_t> neighbours(std::size_t k, std::size_t before, std::size_t after) const;
+  /// Points of the frames [begin, end) in the frame of keyframe `of`.
+  std::vector<SurfacePoint> gather(std::size_t begin, std::size_t end, std::size_t of) const;
+};
+
+/// How points fit what other scans saw: on a surface there, or in the middle of air they looked through.
+struct Visibility {
+  std::size_t agree = 0, conflict = 0, points = 0;
+  double agreement() const {  ///< share of the judged points that agree
+    return agree + conflict == 0 ? 0.0 : static_cast<double>(agree) / static_cast<double>(agree + conflict);
+  }
+  double coverage() const {  ///< share of all points that agree
+    return points == 0 ? 0.0 : static_cast<double>(agree) / static_cast<double>(points);
+  }
+};
+
+/// Judges points, given in the frame of keyframe `of`, by the scans of the frames [begin, end): a point agrees when some
+/// scan ends near it, conflicts when none does and one passes through it. O(points * frames).
+Visibility judge(const KeyframeGraph& graph, std::size_t begin, std::size_t end, std::size_t of,
+                 std::span<const SurfacePoint> points);
+
+}  // namespace outrider::slam_glue

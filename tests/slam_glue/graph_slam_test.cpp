@@ -1,0 +1,107 @@
+// Graph SLAM on a ring of corridors that is closed once, and the pose graph below it.
+
+#include <gtest/gtest.h>
+
+#include "slam_glue/evaluation.hpp"
+#include "slam_glue/graph_slam.hpp"
+#include "slam_glue/segment_world.hpp"
+
+namespace outrider::slam_glue {
+namespace {
+
+struct Outcome {
+  std::vector<Pose2> poses;
+  std::vector<LoopClosure> closures;
+  double ate_m = 0.0;
+};
+
+Outcome slam(const std::vector<LaserScan>& scans, const std::vector<Pose2>& odometry, const std::vector<Pose2>& truth) {
+  GraphSlam slam{GraphSettings{}};
+  for (std::size_t i = 0; i < scans.size(); ++i) slam.add(scans[i], odometry[i]);
+  slam.finish();
+  Outcome run{slam.poses(), slam.closures(), 0.0};
+  std::vector<TimedPose> ours, theirs;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    ours.push_back({scans[i].t, run.poses[i]});
+    theirs.push_back({scans[i].t, truth[i]});
+  }
+  run.ate_m = absolute_trajectory_error(ours, theirs).error_m.rmse;
+  return run;
+}
+
+TEST(GraphSlam, ClosesARingWithBadOdometryOrNone) {
+  const auto world = test::ring_world();
+  const auto truth = test::round_trip();
+  for (unsigned seed = 1; seed <= 2; ++seed)
+    for (const std::size_t beams : {180UL, 361UL})
+      for (const double slip : {0.02, 0.1, -1.0}) {
+        std::mt19937 random(seed);
+        const auto scans = test::scans_along(world, truth, beams, kPi, random);
+        const auto odometry = slip < 0.0 ? std::vector<Pose2>(truth.size())
+                                         : test::slipping_odometry(truth, slip, slip, slip, random);
+        const Outcome run = slam(scans, odometry, truth);
+        EXPECT_LT(run.ate_m, 0.06) << "seed " << seed << ", beams " << beams << ", slip " << slip;
+        const auto believed = std::count_if(run.closures.begin(), run.closures.end(),
+                                            [](const LoopClosure& c) { return c.accepted(); });
+        EXPECT_GT(believed, 5) << "the quarter that is driven twice";
+      }
+}
+
+TEST(GraphSlam, EqualInputsEqualOutputs) {
+  const auto truth = test::round_trip();
+  std::mt19937 random(7);
+  const auto scans = test::scans_along(test::ring_world(), truth, 180, kPi, random);
+  const auto odometry = test::slipping_odometry(truth, 0.05, 0.05, 0.0, random);
+  EXPECT_EQ(slam(scans, odometry, truth).poses, slam(scans, odometry, truth).poses);
+}
+
+/// A ring whose four sides look alike invites wrong closures.
+TEST(GraphSlam, RefusesWhatLooksAlike) {
+  std::vector<test::Wall> walls;
+  test::add_box(walls, 0.0, 0.0, 20.0, 14.0);
+  test::add_box(walls, 2.0, 2.0, 18.0, 12.0);
+  const test::SegmentWorld world(walls);
+  const auto truth = test::round_trip();
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    std::mt19937 random(seed);
+    const auto scans = test::scans_along(world, truth, 180, kPi, random);
+    const Outcome run = slam(scans, test::slipping_odometry(truth, 0.02, 0.02, 0.0, random), truth);
+    for (const LoopClosure& c : run.closures)
+      EXPECT_LT(c.accepted() ? c.correction_m : 0.0, 3.0) << "seed " << seed;
+    EXPECT_LT(run.ate_m, 0.5) << "seed " << seed;
+  }
+}
+
+TEST(PoseGraph, SpreadsTheErrorOfALoop) {
+  // A square of four sides whose turns are 2 degrees short; the closing edge knows better.
+  std::vector<Pose2> nodes{{}};
+  std::vector<PoseEdge> edges;
+  const Pose2 side{5.0, 0.0, 0.5 * kPi - 0.035};
+  for (std::size_t i = 0; i < 4; ++i) {
+    nodes.push_back(nodes.back() * side);
+    edges.push_back({i, i + 1, side, Eigen::Vector3d(1e4, 1e4, 1e3).asDiagonal()});
+  }
+  edges.push_back({0, 4, {}, Eigen::Vector3d(1e6, 1e6, 1e6).asDiagonal(), true});
+  const std::vector<std::size_t> fixed{0};
+  optimise(nodes, edges, fixed);
+  EXPECT_EQ(nodes[0], Pose2{});
+  EXPECT_LT(std::hypot(nodes[4].x, nodes[4].y), 0.05);
+  EXPECT_NEAR(nodes[2].x, 5.0, 0.2);
+  EXPECT_NEAR(nodes[2].y, 5.0, 0.2);
+}
+
+TEST(PoseGraph, OneFalseLoopDoesNotDragAChain) {
+  std::vector<Pose2> nodes{{}};
+  std::vector<PoseEdge> edges;
+  for (std::size_t i = 0; i < 40; ++i) {
+    nodes.push_back(nodes.back() * Pose2{1.0, 0.0, 0.0});
+    edges.push_back({i, i + 1, {1.0, 0.0, 0.0}, Eigen::Vector3d(1e4, 1e4, 1e5).asDiagonal()});
+  }
+  edges.push_back({0, 40, {35.0, 6.0, 0.5}, Eigen::Vector3d(1e4, 1e4, 1e5).asDiagonal(), true});
+  const std::vector<std::size_t> fixed{0};
+  optimise(nodes, edges, fixed);
+  EXPECT_LT(distance(nodes[40].position(), {40.0, 0.0}), 0.3);
+}
+
+}  // namespace
+}  // namespace outrider::slam_glue
