@@ -1,72 +1,18 @@
 #include "team_file.hpp"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include <array>
-#include <fstream>
 #include <set>
 
-#include "world/error.hpp"
-#include "world/nearest_name.hpp"
+#include "explorer/yaml_reader.hpp"
 
 namespace outrider::app {
 namespace {
 
 const std::vector<std::string> kRobotKeys{"name", "start", "speed", "range", "fov", "beams", "radius"};
 
-/// A YAML reader that knows the file's name, so that every complaint can say where.
-class Reader {
- public:
-  explicit Reader(std::filesystem::path path) : path_(std::move(path)) {}
-
-  [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {
-    const YAML::Mark mark = node.Mark();
-    throw InputError(mark.is_null() ? fmt::format("{}: {}", path_.string(), what)
-                                    : fmt::format("{}:{}: {}", path_.string(), mark.line + 1, what));
-  }
-
-  std::string text(const YAML::Node& node, const char* what) const {
-    if (!node.IsScalar()) fail(node, fmt::format("expected text as {}, not a list or a map", what));
-    return node.Scalar();
-  }
-
-  void known_keys(const YAML::Node& map, const std::vector<std::string>& keys) const {
-    for (const auto& pair : map) {
-      const std::string key = text(pair.first, "a key");
-      if (std::find(keys.begin(), keys.end(), key) == keys.end())
-        fail(pair.first, fmt::format("unknown key '{}'{}", key, suggestion(key, keys)));
-    }
-  }
-
-  double number(const YAML::Node& node, const std::string& key, double low, double high, const char* unit) const {
-    double value = 0.0;
-    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= low && value <= high))
-      fail(node, fmt::format("{}: expected a number from {} to {} {}", key, low, high, unit));
-    return value;
-  }
-
-  Pose2 pose(const YAML::Node& node) const {
-    if (!node.IsSequence() || node.size() < 2 || node.size() > 3)
-      fail(node, "start: expected [x, y, theta] in metres and radians");
-    return {number(node[0], "start x", -1e6, 1e6, "m"), number(node[1], "start y", -1e6, 1e6, "m"),
-            node.size() == 3 ? wrap_angle(number(node[2], "start theta", -1e3, 1e3, "rad")) : 0.0};
-  }
-
-  YAML::Node load() const {
-    std::ifstream file(path_);
-    if (!file || std::filesystem::is_directory(path_))
-      throw InputError(fmt::format("{}: cannot open the team file", path_.string()));
-    try {
-      return YAML::Load(file);
-    } catch (const YAML::Exception& e) {
-      throw InputError(fmt::format("{}:{}: {}", path_.string(), e.mark.line + 1, e.msg));
-    }
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using Reader = explorer::YamlReader;
 
 RobotSpec read_robot(const Reader& reader, const YAML::Node& node, std::size_t index) {
   if (!node.IsMap()) reader.fail(node, "expected a robot as {name, start, speed, range, fov, beams, radius}");
@@ -76,7 +22,7 @@ RobotSpec read_robot(const Reader& reader, const YAML::Node& node, std::size_t i
   constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
   if (robot.name.empty() || robot.name.find_first_not_of(kAllowed) != std::string::npos)
     reader.fail(node["name"], fmt::format("name: expected letters, digits, '_' or '-', not '{}'", robot.name));
-  if (node["start"]) robot.start = reader.pose(node["start"]);
+  if (node["start"]) robot.start = reader.pose(node["start"], "start");
   if (node["speed"]) robot.speed = reader.number(node["speed"], "speed", 0.001, 100.0, "m/s");
   if (node["range"]) robot.range = reader.number(node["range"], "range", 0.01, 1000.0, "m");
   if (node["fov"]) robot.fov = reader.number(node["fov"], "fov", 0.01, 2.0 * kPi + 1e-6, "rad");
@@ -101,7 +47,7 @@ std::vector<RobotSpec> dai_team(double resolution) {
 }
 
 TeamFile read_team_file(const std::filesystem::path& path) {
-  const Reader reader(path);
+  const Reader reader(path, "team file");
   const YAML::Node root = reader.load();
   if (!root.IsMap() || !root["robots"] || !root["robots"].IsSequence() || root["robots"].size() == 0)
     throw InputError(fmt::format("{}: expected 'robots: [{{name, start, speed, range, ...}}, ...]'", path.string()));
