@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "auction/allocation.hpp"
+#include "decision/dvf.hpp"
+#include "decision/passability.hpp"
 #include "explorer/task_board.hpp"
 #include "link/bus.hpp"
 #include "world/messages.hpp"
@@ -46,7 +48,10 @@ struct Situation {
   const RobotSpec& spec;
   Pose2 pose;
   const OccupancyGrid& map;
+  const decision::Passability& passable;       ///< for this robot
+  Cell at;                                     ///< the cell it is in
   std::span<const Teammate> team;              ///< team-mates heard recently
+  std::span<const Teammate> known;             ///< everybody ever heard, as last heard
   std::optional<Task> task;                    ///< the current one
   bool needs_task = false;                     ///< it is done, void, or there is none, and the map may offer one
   double explored_rate = 0.0;                  ///< A(k) [m^2/s]
@@ -80,6 +85,7 @@ struct CoordinatorSettings {
   auction::BidParameters bids;
   auction::Turn turn = auction::Turn::kBestBid;
   double beta = 1.0;             ///< Burgard's weight of the distance
+  decision::DvfReading dvf;      ///< independent, dvf, dvf-reactive
   double cluster_spacing = 4.0;  ///< block edge of cluster tasks [m]; the team's shortest sensing range by default
 };
 

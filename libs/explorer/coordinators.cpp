@@ -5,6 +5,7 @@
 
 #include "explorer/auction_coordinator.hpp"
 #include "explorer/coordinator.hpp"
+#include "explorer/dvf_coordinator.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"
 #include "world/ray.hpp"
@@ -84,6 +85,9 @@ const std::vector<Row>& table() {
       {{"nearest-reserved", "nearest frontier that no team-mate is heading for (Yamauchi 1998)"}, make_nearest},
       {{"burgard", "utility that falls near assigned targets, minus distance (Burgard 2005)"}, make_burgard},
       {{"hungarian", "assignment of frontier clusters with the least total travel time"}, make_hungarian},
+      {{"independent", "discounted nearest frontier, planned anew every second (Matignon 2012, eq. 1)"}, make_dvf_coordinator},
+      {{"dvf", "distributed value functions; the silent stay where last heard (Matignon 2012, eq. 3, 7)"}, make_dvf_coordinator},
+      {{"dvf-reactive", "distributed value functions that forget the silent (Matignon 2012, eq. 6)"}, make_dvf_coordinator},
   };
   return rows;
 }

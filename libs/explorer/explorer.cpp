@@ -193,8 +193,8 @@ void Explorer::run_coordinator(double now_s) {
   };
   const bool needs_task = !task_ && phase_ == Phase::kExploring &&
                           (map_news_s_ > refused_s_ || now_s >= refused_s_ + kAskAgain);
-  const Situation situation{now_s, self_, spec_, pose_, map_.states(), heard_, task_, needs_task, rate_.value(),
-                            inbox_, tasks};
+  const Situation situation{now_s, self_, spec_, pose_, map_.states(), passable_, here(), heard_, team_,
+                            task_, needs_task, rate_.value(), inbox_, tasks};
   Decision decision = coordinator_->decide(situation);
   inbox_.clear();
   for (Message& message : decision.send) bus_.send(std::move(message));

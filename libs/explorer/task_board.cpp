@@ -99,7 +99,7 @@ std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decisio
   for (const Cell task : tasks) {
     const auto stand = stand_for(map, task);
     if (!stand) continue;
-    entries.push_back({task, *stand, static_cast<float>(gain_at(map, *stand)),
+    entries.push_back({task, *stand, grain.gains ? static_cast<float>(gain_at(map, *stand)) : 0.0F,
                        static_cast<float>(field_.metres(*stand))});
   }
   std::sort(entries.begin(), entries.end(), [](const BidEntry& a, const BidEntry& b) {

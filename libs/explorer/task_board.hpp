@@ -20,6 +20,7 @@ namespace outrider::explorer {
 struct TaskGrain {
   double spacing = 1.0;      ///< one task a block of this edge and cluster [m]; the paper's cells are 1 m
   std::size_t most = 256;    ///< more tasks than this double the spacing until they fit
+  bool gains = true;         ///< compute BidEntry::gain, else it is 0
 };
 
 /// Why a frontier stays unexplored.
