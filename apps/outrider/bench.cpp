@@ -113,7 +113,7 @@ void merge(const Options& o, Context& ctx) {
 }  // namespace
 
 const std::vector<BenchInfo>& benches() {
-  static const std::vector<BenchInfo> all{bench_dai2014()};
+  static const std::vector<BenchInfo> all{bench_dai2014(), bench_matignon2012()};
   return all;
 }
 

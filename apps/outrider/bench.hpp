@@ -70,5 +70,6 @@ std::uint64_t trial_seed(std::uint64_t seed, const std::string& case_name, int n
 
 // One file a bench.
 BenchInfo bench_dai2014();
+BenchInfo bench_matignon2012();
 
 }  // namespace outrider::app

@@ -108,7 +108,9 @@ Json result_json(const explorer::MissionResult& r) {
           {"time_s", milli(r.time_s)},
           {"time_to", time_to},
           {"mission_time_s", milli(r.mission_time_s)},
-          {"interactions", {{"count", r.interactions}, {"time_s", milli(r.interaction_s)}}},
+          {"interactions", {{"count", r.interactions}, {"time_s", milli(r.interaction_s)},
+                            {"in_breaks", {{"count", r.interactions_in_breaks},
+                                           {"time_s", milli(r.interaction_in_breaks_s)}}}}},
           {"messages", {{"sent", r.radio.sent}, {"delivered", r.radio.delivered}, {"bytes", r.radio.bytes}}},
           {"maps_equal", r.maps_equal},
           {"left", left}};

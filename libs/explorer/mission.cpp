@@ -84,17 +84,28 @@ class Mission {
     const std::size_t n = robots_.size();
     close_.resize(n * n);
     for (std::size_t a = 0; a < n; ++a) {
-      bool any = false;
+      bool any = false, any_cut = false;
       for (std::size_t b = 0; b < n; ++b) {
         if (a == b) continue;
         const bool close = distance(simulator_.pose(static_cast<RobotId>(a)).position(),
                                     simulator_.pose(static_cast<RobotId>(b)).position()) < kClose;
-        result_.interactions += close && !close_[a * n + b] && a < b;
+        const bool cut = close && cut_off(static_cast<RobotId>(a), static_cast<RobotId>(b));
+        const bool begins = close && !close_[a * n + b] && a < b;
+        result_.interactions += begins;
+        result_.interactions_in_breaks += begins && cut;
         close_[a * n + b] = close;
         any = any || close;
+        any_cut = any_cut || cut;
       }
       if (any) result_.interaction_s += settings_.sim.dt;
+      if (any_cut) result_.interaction_in_breaks_s += settings_.sim.dt;
     }
+  }
+
+  /// A break silences the two now.
+  bool cut_off(RobotId a, RobotId b) const {
+    const auto& breaks = radio_.breaks();
+    return std::any_of(breaks.begin(), breaks.end(), [&](const link::Break& cut) { return cut.cuts(a, b, now_s_); });
   }
 
   /// Messages are answered within the step until the air is quiet.

@@ -78,6 +78,8 @@ struct MissionResult {
   link::RadioCounters radio;
   std::uint64_t interactions = 0;   ///< how often two robots came closer than 1 m
   double interaction_s = 0.0;       ///< robot-seconds with another robot closer than 1 m
+  std::uint64_t interactions_in_breaks = 0;  ///< of these, those that began while a break cut the two off
+  double interaction_in_breaks_s = 0.0;      ///< of these, those near somebody whom a break cut off
   bool maps_equal = false;          ///< all living robots' maps were equal at the end
   std::vector<double> decision_ms;  ///< wall-clock time of every act(); the only part that differs between equal runs
 };

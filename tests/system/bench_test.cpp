@@ -1,6 +1,7 @@
 // What a user of `outrider bench` relies on: the document, shards, threads, clear refusals.
 
 #include <fstream>
+#include <map>
 
 #include "system/run.hpp"
 
@@ -47,6 +48,21 @@ TEST_F(Bench, AnotherSeedDrawsOtherPlacements) {
   const Json a = short_bench({}), b = short_bench({"--seed", "2"});
   EXPECT_EQ(a["rows"][0].dump(), b["rows"][0].dump());  // the paper's placement
   EXPECT_NE(a["rows"][4].dump(), b["rows"][4].dump());  // a random one
+}
+
+// Without a radio everybody explores everything: whatever else changes, that takes longer.
+TEST_F(Bench, MatignonRunsItsConditionsOnTheSameTrials) {
+  const Outcome outcome = run({"bench", "matignon2012", "--trials", "2", "--world", "office2", "--json", "-q", "--out",
+                               (dir / "matignon").string()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json document = Json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(document.is_object());
+  std::map<std::string, double> time;
+  for (const Json& row : document["rows"]) time[row["algorithm"]] += row["exploration_time_s"].get<double>();
+  for (const char* other : {"permanent", "breaks+independent", "breaks+dvf"}) EXPECT_GT(time["none"], time[other]) << other;
+  std::ifstream page(dir / "matignon" / "report.html");
+  const std::string html((std::istreambuf_iterator<char>(page)), std::istreambuf_iterator<char>());
+  EXPECT_NE(html.find("<svg"), std::string::npos);
 }
 
 TEST_F(Bench, RefusesNonsense) {
