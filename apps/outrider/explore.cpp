@@ -5,6 +5,7 @@
 #include <chrono>
 #include <sstream>
 
+#include "auction/bid_options.hpp"
 #include "comms_spec.hpp"
 #include "context.hpp"
 #include "explore.hpp"
@@ -30,7 +31,6 @@ MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, co
   settings.coordinator = o.coordinator;
   explorer::make_coordinator(o.coordinator, {});  // an unknown name stops here, before any work
   settings.coordination.bids = o.bids;
-  settings.coordination.turn = o.turn == "best-bid" ? auction::Turn::kBestBid : auction::Turn::kRobotOrder;
   settings.coordination.cluster_spacing =
       std::min_element(team.begin(), team.end(), [](const auto& a, const auto& b) { return a.range < b.range; })->range;
   settings.explorer.return_home = o.return_home;
@@ -49,8 +49,7 @@ Json configuration(const ExploreOptions& o, const MissionSettings& s) {
   return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms}, {"sensing", o.sensing},
           {"localization", o.localization}, {"until", o.until}, {"max_time_s", o.max_time},
           {"return_home", o.return_home}, {"fault", o.fault}, {"step_s", s.sim.dt}, {"range_noise_m", o.range_noise},
-          {"scan_rate_hz", s.sim.scan_rate}, {"rho", o.bids.rho}, {"gamma", o.bids.gamma},
-          {"influence_weight", o.bids.weight}, {"alpha", o.bids.alpha}, {"turn", o.turn}};
+          {"scan_rate_hz", s.sim.scan_rate}, {"bids", auction::bid_options_text(o.bids)}};
 }
 
 Json timing(double wall_s, MissionResult& result) {
@@ -170,22 +169,20 @@ void add_explore_options(CLI::App& verb, ExploreOptions& o) {
                    "comma-separated")
       ->type_name("SPEC");
   verb.add_flag("--octomap", o.octomap, "also write map.bt (OctoMap)");
-  verb.add_option("--rho", o.bids.rho, "ia: weight of the distance [m^2/m] (Dai 2014, eq. 3)")
-      ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb.add_option("--gamma", o.bids.gamma, "ia, ea, daa: influence of robots without target (eq. 2)")
-      ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb.add_option("--influence-weight", o.bids.weight, "ia, ea, daa: of U_p2 as a whole [m^2]")
-      ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb.add_option("--alpha", o.bids.alpha, "daa: expected utility per explored rate [s] (eq. 10)")
-      ->check(number_in(0.0, 1e9))->capture_default_str();
-  verb.add_option("--turn", o.turn, "ia, ea, daa, ta: whose bid is served next")
-      ->check(CLI::IsMember({"best-bid", "robot-order"}))->capture_default_str();
+  verb.add_option_function<std::vector<std::string>>("--bids", [&o](const auto& items) {
+        for (const std::string& item : items) auction::set_bid_options(o.bids, item);
+      }, "parameters and readings of ia, ea, daa, ta: rho=X, gamma=X, ...; comma-separated; all keys below")
+      ->delimiter(',')->type_name("KEY=VALUE");
 }
 
 void add_explore(CLI::App& app, Context& ctx) {
   auto o = std::make_shared<ExploreOptions>();
   CLI::App* verb = app.add_subcommand("explore", "a simulated team explores an unknown world");
   add_explore_options(*verb, *o);
+  std::string keys = "Keys of --bids:\n";
+  for (const auto& option : auction::bid_options())
+    keys += fmt::format("  {:<7} {}: {}\n", option.key, option.values, option.about);
+  verb->footer(keys);
   add_run_flags(*verb, ctx);
   verb->callback([o, &ctx] { explore(*o, ctx); });
 }

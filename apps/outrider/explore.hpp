@@ -24,7 +24,6 @@ struct ExploreOptions {
   double until = 1.0, max_time = 0.0, range_noise = 0.0;
   bool return_home = false, octomap = false;
   auction::BidParameters bids;
-  std::string turn = "best-bid";
 };
 
 /// Adds these flags, and WORLD, to a command line.

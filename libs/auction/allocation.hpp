@@ -14,13 +14,17 @@ namespace outrider::auction {
 /// The sheets of one round as a dense table: robots (by id) x tasks (by row, then column).
 class BidTable {
  public:
+  /// Copies the sheets. O(robots x tasks).
   BidTable(std::span<const BidSheet> sheets, const GridGeometry& geometry);
+  BidTable(const BidTable&) = delete;
+  BidTable& operator=(const BidTable&) = delete;
 
   std::size_t robots() const { return sheets_.size(); }
   std::size_t tasks() const { return tasks_.size(); }
   const BidSheet& sheet(std::size_t i) const { return sheets_[i]; }
   Cell task(std::size_t p) const { return tasks_[p]; }
   Point task_point(std::size_t p) const { return geometry_.center(tasks_[p]); }
+  Point goal_point(std::size_t i) const { return geometry_.center(*sheets_[i].goal); }  ///< of a robot that has one
   /// Robot i's bid for task p; null when it made none.
   const BidEntry* entry(std::size_t i, std::size_t p) const { return entries_[i * tasks_.size() + p]; }
   Award award(std::size_t i, std::size_t p, double value) const;
@@ -35,15 +39,10 @@ class BidTable {
 /// True when nothing known blocks the straight line between two points; eq. 2 drops the influence of others.
 using Clear = std::function<bool(Point, Point)>;
 
-/// Who is served next in the sequential auction (the paper allows both readings).
-enum class Turn {
-  kBestBid,     ///< the best bid of all robots that have no task yet
-  kRobotOrder,  ///< R_1, R_2, ..., each its own best
-};
-
-/// Sequential single-item auction (Dai 2014, section 4): one task a robot, U_p2 of eq. 2 follows every award.
-/// O(n^2 m) evaluations at most, 2 n m exponentials. Ties: lower robot, then lower task.
-std::vector<Award> sequential_auction(const BidTable& table, BidRule rule, const BidParameters& parameters, Turn turn,
+/// Sequential single-item auction (Dai 2014, section 4): one task a robot, U_p2 of eq. 2 follows every award. Influences
+/// below 1e-12 count as none. O(n m) bids at first, then an award touches only the bids near the winner's place and
+/// target; in the worst case O(n^2 m). Ties: lower robot, then lower task. With Rebid::kFinisher busy robots win nothing.
+std::vector<Award> sequential_auction(const BidTable& table, BidRule rule, const BidParameters& parameters,
                                       const Clear& clear);
 
 /// Burgard et al. 2005: U_t - beta V_t^i with V in sensing ranges; the utility of tasks near an awarded one falls
@@ -54,8 +53,19 @@ std::vector<Award> burgard_assignment(const BidTable& table, double beta, const 
 /// As many robots as possible are served.
 std::vector<Award> hungarian_assignment(const BidTable& table);
 
-/// Least-cost assignment of rows to columns: result[row] = column or -1. `cost` is row-major rows x columns; infinity
-/// marks a forbidden pair. Serves as many rows as possible, then the least total cost.
-std::vector<int> least_cost_assignment(std::span<const double> cost, std::size_t rows, std::size_t columns);
+/// Sequential single-item auctions of all tasks (Koenig et al. 2006), for the makespan: task by task goes to the robot that
+/// would be there first after all it has won already, straight lines between tasks. Awards in that order; `value` is minus
+/// the time of arrival [s]. O(m^2) bids and some.
+std::vector<Award> all_tasks_auction(const BidTable& table);
+/// The first award of each robot: what it drives to before the next round.
+std::vector<Award> first_of_each(std::span<const Award> awards);
+
+/// Total travel time of a round [s], and the least possible for as many robots (the optimal assignment of the same bids).
+struct RoundTime {
+  double awarded_s = 0.0;
+  double least_s = 0.0;
+};
+/// Awards for tasks that their robots did not bid for are left out of both.
+RoundTime round_time(const BidTable& table, std::span<const Award> awards);
 
 }  // namespace outrider::auction

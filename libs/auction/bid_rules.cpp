@@ -24,7 +24,9 @@ double bid_ea(const BidTerms& t, const BidParameters& k) { return efficiency(uti
 
 double bid_daa(const BidTerms& t, const BidParameters& k) { return efficiency(utility(t, k) + k.alpha * t.a_k, t); }
 
-double bid_ta(const BidTerms& t, const BidParameters&) { return -t.d_p; }
+double bid_ta(const BidTerms& t, const BidParameters& k) {
+  return k.ta == TaUtility::kConstant ? -t.d_p : t.u_p1 - k.rho * t.d_p;
+}
 
 std::optional<BidRule> bid_rule(std::string_view name) {
   static constexpr std::array<std::pair<std::string_view, BidRule>, 4> kRules{

@@ -7,12 +7,45 @@
 
 namespace outrider::auction {
 
-/// The free scalars of the rules. Defaults: docs/equations.md says which reading and why.
+/// U_p1, "the size of the detectable subset": what counts as detectable.
+enum class Gain {
+  kUnseen,     ///< unknown cells within range and in line of sight
+  kFootprint,  ///< every cell within range and in line of sight, known or not
+};
+/// D_p, "the distance from the current location to the frontier cell".
+enum class Way {
+  kShortest,  ///< along the shortest safe path on the known map
+  kStraight,  ///< as the crow flies
+};
+/// What a task is worth to TA-A.
+enum class TaUtility {
+  kConstant,  ///< the same everywhere (Burgard's first part): the nearest wins
+  kUnseen,    ///< U_p1 (Sheng 2006, Simmons 2000), minus rho D
+};
+/// Who is served next.
+enum class Turn {
+  kBestBid,     ///< the best bid of all robots that have no task yet
+  kRobotOrder,  ///< R_1, R_2, ..., each its own best
+};
+/// Who bids when the first robot has finished its task.
+enum class Rebid {
+  kEverybody,  ///< "unfinished tasks are reauctioned in the next cycle"
+  kFinisher,   ///< robots under way keep their tasks, which count as their targets
+};
+
+/// The free scalars of the rules, and the paper's ambiguous points as named choices. docs/equations.md tells which
+/// reading is the default and what the others cost.
 struct BidParameters {
   double rho = 1.0;     ///< weight of the distance, eq. 3 [m^2/m]
   double gamma = 1.0;   ///< influence of team-mates without a target, eq. 2
   double weight = 1.0;  ///< of the whole second part U_p2 [m^2]
   double alpha = 0.3;   ///< expected utility per explored rate, eq. 10 [s]
+  Gain gain = Gain::kUnseen;
+  Way way = Way::kShortest;
+  bool sight = true;    ///< team-mates behind something have no influence, eq. 2
+  TaUtility ta = TaUtility::kConstant;
+  Turn turn = Turn::kBestBid;
+  Rebid rebid = Rebid::kEverybody;
 };
 
 /// One robot's view of one task while an auction runs.
@@ -30,7 +63,7 @@ inline constexpr double kShortestWay = 0.1;
 double bid_ia(const BidTerms& t, const BidParameters& k);   ///< IA-A: E = U - rho D (Dai 2014, eq. 1 to 3)
 double bid_ea(const BidTerms& t, const BidParameters& k);   ///< EA-A: E = U / (D / v) (eq. 5)
 double bid_daa(const BidTerms& t, const BidParameters& k);  ///< DAA-A: E = (U + alpha A(k-1)) / (D / v) (eq. 10 to 12)
-double bid_ta(const BidTerms& t, const BidParameters& k);   ///< TA-A: constant utility, so E = -D: the nearest wins
+double bid_ta(const BidTerms& t, const BidParameters& k);   ///< TA-A: E = -D, or U_p1 - rho D: BidParameters::ta
 
 using BidRule = double (*)(const BidTerms&, const BidParameters&);
 

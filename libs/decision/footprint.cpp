@@ -29,7 +29,8 @@ Footprint::Footprint(double range, double resolution) {
   }
 }
 
-double Footprint::unseen_area(const OccupancyGrid& map, Cell from) const {
+template <class Counts>
+double Footprint::sum(const OccupancyGrid& map, Cell from, Counts&& counts) const {
   double area = 0.0;
   for (const auto& ray : rays_) {
     for (const Step& step : ray) {
@@ -37,10 +38,18 @@ double Footprint::unseen_area(const OccupancyGrid& map, Cell from) const {
       if (!map.contains(c)) break;
       const CellState state = map[c];
       if (state == CellState::kOccupied) break;
-      if (state == CellState::kUnknown) area += step.area;
+      if (counts(state)) area += step.area;
     }
   }
   return area;
+}
+
+double Footprint::unseen_area(const OccupancyGrid& map, Cell from) const {
+  return sum(map, from, [](CellState state) { return state == CellState::kUnknown; });
+}
+
+double Footprint::area(const OccupancyGrid& map, Cell from) const {
+  return sum(map, from, [](CellState) { return true; });
 }
 
 }  // namespace outrider::decision

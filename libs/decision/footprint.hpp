@@ -15,8 +15,13 @@ class Footprint {
 
   /// Unknown area within range and in line of sight of `from` [m^2]. O(rays x range / resolution).
   double unseen_area(const OccupancyGrid& map, Cell from) const;
+  /// Area within range and in line of sight, known or not [m^2].
+  double area(const OccupancyGrid& map, Cell from) const;
 
  private:
+  template <class Counts>
+  double sum(const OccupancyGrid& map, Cell from, Counts&& counts) const;
+
   struct Step {
     Cell offset;
     double area;  // share of the disc that this cell of the ray stands for [m^2]

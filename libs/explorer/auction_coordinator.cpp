@@ -14,7 +14,8 @@ constexpr double kRetry = 1.0;         // [s] between rounds opened by a robot t
 
 class AuctionCoordinator : public Coordinator {
  public:
-  AuctionCoordinator(const TaskGrain& grain, Allocate allocate) : grain_(grain), allocate_(std::move(allocate)) {}
+  AuctionCoordinator(const TaskGrain& grain, Allocate allocate, auction::Rebid rebid)
+      : grain_(grain), allocate_(std::move(allocate)), rebid_(rebid) {}
 
   Decision decide(const Situation& s) override {
     Decision decision;
@@ -82,10 +83,11 @@ class AuctionCoordinator : public Coordinator {
     const auto& g = s.map.geometry();
     const auto clear = [&](Point a, Point b) { return line_of_sight(s.map, g.cell_of(a), g.cell_of(b)); };
     Awards awards{open_->id, {}, allocate_(bids, clear)};
-    for (std::size_t i = 0; i < bids.robots(); ++i) awards.bidders.push_back(bids.sheet(i).robot);
+    for (std::size_t i = 0; i < bids.robots(); ++i)
+      if (!bids.sheet(i).busy || rebid_ == auction::Rebid::kEverybody) awards.bidders.push_back(bids.sheet(i).robot);
     AuctionRecord record{s.now_s, open_->id, std::move(open_->sheets), awards.awards, {}};
     for (const RobotId robot : open_->expected)
-      if (std::find(awards.bidders.begin(), awards.bidders.end(), robot) == awards.bidders.end())
+      if (std::none_of(record.sheets.begin(), record.sheets.end(), [&](const auto& sheet) { return sheet.robot == robot; }))
         record.unheard.push_back(robot);
     decision.records.push_back(std::move(record));
     open_.reset();
@@ -111,6 +113,7 @@ class AuctionCoordinator : public Coordinator {
 
   TaskGrain grain_;
   Allocate allocate_;
+  auction::Rebid rebid_;
   std::uint32_t count_ = 0;
   std::optional<OpenRound> open_;
   std::optional<std::pair<RoundId, double>> awaiting_;  // a round we bid in, and since when [s]
@@ -119,8 +122,8 @@ class AuctionCoordinator : public Coordinator {
 
 }  // namespace
 
-std::unique_ptr<Coordinator> make_auction_coordinator(const TaskGrain& grain, Allocate allocate) {
-  return std::make_unique<AuctionCoordinator>(grain, std::move(allocate));
+std::unique_ptr<Coordinator> make_auction_coordinator(const TaskGrain& grain, Allocate allocate, auction::Rebid rebid) {
+  return std::make_unique<AuctionCoordinator>(grain, std::move(allocate), rebid);
 }
 
 }  // namespace outrider::explorer

@@ -15,6 +15,8 @@ using Allocate = std::function<std::vector<Award>(const auction::BidTable&, cons
 /// everybody who hears it answers with all its bids (BidSheet), busy robots too: unfinished tasks are auctioned again.
 /// The opener closes the round when all expected sheets are in, or after 0.5 s, and broadcasts the awards. Of two
 /// rounds open at once the one of the lower robot stands. docs/protocol.md has the state chart.
-std::unique_ptr<Coordinator> make_auction_coordinator(const TaskGrain& grain, Allocate allocate);
+/// With Rebid::kFinisher robots under way are asked, but keep their tasks.
+std::unique_ptr<Coordinator> make_auction_coordinator(const TaskGrain& grain, Allocate allocate,
+                                                      auction::Rebid rebid = auction::Rebid::kEverybody);
 
 }  // namespace outrider::explorer

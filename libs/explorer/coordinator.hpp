@@ -83,7 +83,6 @@ class Coordinator {
 /// What all robots of a team agree on beforehand.
 struct CoordinatorSettings {
   auction::BidParameters bids;
-  auction::Turn turn = auction::Turn::kBestBid;
   double beta = 1.0;             ///< Burgard's weight of the distance
   decision::DvfReading dvf;      ///< independent, dvf, dvf-reactive
   double cluster_spacing = 4.0;  ///< block edge of cluster tasks [m]; the team's shortest sensing range by default

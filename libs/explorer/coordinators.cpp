@@ -52,9 +52,18 @@ std::unique_ptr<Coordinator> make_nearest(std::string_view name, const Coordinat
 /// Dai's rules differ in one function.
 std::unique_ptr<Coordinator> make_dai(std::string_view name, const CoordinatorSettings& settings) {
   const auction::BidRule rule = *auction::bid_rule(name);
-  return make_auction_coordinator({}, [=](const auction::BidTable& table, const auction::Clear& clear) {
-    return auction::sequential_auction(table, rule, settings.bids, settings.turn, clear);
-  });
+  const TaskGrain grain{.whole_footprint = settings.bids.gain == auction::Gain::kFootprint};
+  const auto allocate = [=](const auction::BidTable& table, const auction::Clear& clear) {
+    return auction::sequential_auction(table, rule, settings.bids, clear);
+  };
+  return make_auction_coordinator(grain, allocate, settings.bids.rebid);
+}
+
+std::unique_ptr<Coordinator> make_ssi(std::string_view, const CoordinatorSettings& settings) {
+  return make_auction_coordinator({.spacing = settings.cluster_spacing},
+                                  [](const auction::BidTable& table, const auction::Clear&) {
+                                    return auction::first_of_each(auction::all_tasks_auction(table));
+                                  });
 }
 
 std::unique_ptr<Coordinator> make_burgard(std::string_view, const CoordinatorSettings& settings) {
@@ -80,11 +89,12 @@ const std::vector<Row>& table() {
       {{"ia", "IA-A: utility with the team's dispersion minus weighted distance (Dai 2014, eq. 1 to 4)"}, make_dai},
       {{"ea", "EA-A: utility per travel time (Dai 2014, eq. 5)"}, make_dai},
       {{"daa", "DAA-A: EA-A that learns how fast each robot explores (Dai 2014, eq. 6 to 12)"}, make_dai},
-      {{"ta", "TA-A: conventional auction, constant utility, the nearest wins (Dai 2014)"}, make_dai},
+      {{"ta", "TA-A: conventional auction, the nearest wins, or unknown cells count (Dai 2014; --bids ta=unseen)"}, make_dai},
       {{"nearest", "every robot to its nearest frontier (Yamauchi 1998)"}, make_nearest},
       {{"nearest-reserved", "nearest frontier that no team-mate is heading for (Yamauchi 1998)"}, make_nearest},
       {{"burgard", "utility that falls near assigned targets, minus distance (Burgard 2005)"}, make_burgard},
       {{"hungarian", "assignment of frontier clusters with the least total travel time"}, make_hungarian},
+      {{"ssi", "sequential single-item auctions of all frontier clusters for the makespan (Koenig 2006)"}, make_ssi},
       {{"independent", "discounted nearest frontier, planned anew every second (Matignon 2012, eq. 1)"}, make_dvf_coordinator},
       {{"dvf", "distributed value functions; the silent stay where last heard (Matignon 2012, eq. 3, 7)"}, make_dvf_coordinator},
       {{"dvf-reactive", "distributed value functions that forget the silent (Matignon 2012, eq. 6)"}, make_dvf_coordinator},

@@ -99,7 +99,7 @@ std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decisio
   for (const Cell task : tasks) {
     const auto stand = stand_for(map, task);
     if (!stand) continue;
-    entries.push_back({task, *stand, grain.gains ? static_cast<float>(gain_at(map, *stand)) : 0.0F,
+    entries.push_back({task, *stand, grain.gains ? static_cast<float>(gain_at(map, *stand, grain.whole_footprint)) : 0.0F,
                        static_cast<float>(field_.metres(*stand))});
   }
   std::sort(entries.begin(), entries.end(), [](const BidEntry& a, const BidEntry& b) {
@@ -122,14 +122,15 @@ void TaskBoard::note_changes(std::span<const std::uint32_t> changed) {
 }
 
 /// The footprint reaches one block far at most: the gain still holds when none of the nine blocks around has changed.
-double TaskBoard::gain_at(const OccupancyGrid& map, Cell stand) {
+double TaskBoard::gain_at(const OccupancyGrid& map, Cell stand, bool whole) {
   const Cell block = revisions_.geometry().cell_of(geometry_.center(stand));
   std::uint64_t newest = 0;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx)
       if (const Cell b{block.x + dx, block.y + dy}; revisions_.contains(b)) newest = std::max(newest, revisions_[b]);
   auto [entry, fresh] = gains_.try_emplace(geometry_.index(stand));
-  if (fresh || entry->second.revision < newest) entry->second = {revision_, footprint_.unseen_area(map, stand)};
+  if (fresh || entry->second.revision < newest) 
+    entry->second = {revision_, whole ? footprint_.area(map, stand) : footprint_.unseen_area(map, stand)};
   return entry->second.area;
 }
 

@@ -21,6 +21,7 @@ struct TaskGrain {
   double spacing = 1.0;      ///< one task a block of this edge and cluster [m]; the paper's cells are 1 m
   std::size_t most = 256;    ///< more tasks than this double the spacing until they fit
   bool gains = true;         ///< compute BidEntry::gain, else it is 0
+  bool whole_footprint = false;  ///< gains count known cells too; the same for all calls on one board
 };
 
 /// Why a frontier stays unexplored.
@@ -64,7 +65,7 @@ class TaskBoard {
   decision::DistanceField field_;         // from field_at_
   Cell field_at_{-1, -1};
   decision::Footprint footprint_;
-  double gain_at(const OccupancyGrid& map, Cell stand);
+  double gain_at(const OccupancyGrid& map, Cell stand, bool whole);
 
   struct Gain {
     std::uint64_t revision;  // of the map around, when computed

@@ -1,4 +1,5 @@
 #include "auction/allocation.hpp"
+#include "auction/assignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,12 +57,15 @@ std::vector<Award> plain_auction(const std::vector<BidSheet>& sheets, BidRule ru
     std::optional<Award> best;
     for (const BidSheet& sheet : sheets) {
       if (target_of(sheet.robot)) continue;
+      if (k.turn == Turn::kRobotOrder && sheet.robot != static_cast<RobotId>(stage)) continue;
       std::vector<BidEntry> entries = sheet.entries;
       std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
         return a.task.y != b.task.y ? a.task.y < b.task.y : a.task.x < b.task.x;
       });
       for (const BidEntry& entry : entries) {
         if (std::any_of(awards.begin(), awards.end(), [&](const Award& a) { return a.task == entry.task; })) continue;
+        const double straight = distance(kField.center(entry.task), sheet.pose.position());
+        const double d_p = k.way == Way::kStraight ? straight : static_cast<double>(entry.distance);
         double u_p2 = 0.0;
         for (const BidSheet& other : sheets) {
           if (other.robot == sheet.robot) continue;
@@ -70,12 +74,11 @@ std::vector<Award> plain_auction(const std::vector<BidSheet>& sheets, BidRule ru
           const double d = distance(kField.center(entry.task), at);
           u_p2 -= (target ? 1.0 : k.gamma) * std::exp(-d * d / (other.range * other.range));
         }
-        const double e = rule({entry.gain, u_p2, entry.distance, sheet.speed, sheet.explored_rate}, k);
+        const double e = rule({entry.gain, u_p2, d_p, sheet.speed, sheet.explored_rate}, k);
         if (!best || e > best->value + 1e-12) best = Award{sheet.robot, entry.task, entry.stand, e};
       }
     }
-    if (!best) break;
-    awards.push_back(*best);
+    if (best) awards.push_back(*best);
   }
   return awards;
 }
@@ -86,8 +89,11 @@ TEST(SequentialAuction, EqualsThePaperWordByWord) {
       SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
       std::mt19937_64 random(seed);
       const auto sheets = random_sheets(random, 2 + static_cast<int>(seed % 5), 25);
-      const BidParameters k{.rho = 0.7, .gamma = 1.5, .weight = 5.0, .alpha = 0.3};
-      const auto fast = sequential_auction(BidTable(sheets, kField), *bid_rule(name), k, Turn::kBestBid, always_clear);
+      BidParameters k{.rho = 0.7, .gamma = 1.5, .weight = 5.0, .alpha = 0.3};
+      if (seed % 3 == 0) k.turn = Turn::kRobotOrder;
+      if (seed % 4 == 0) k.way = Way::kStraight;
+      if (seed % 5 == 0) k.ta = TaUtility::kUnseen;
+      const auto fast = sequential_auction(BidTable(sheets, kField), *bid_rule(name), k, always_clear);
       const auto plain = plain_auction(sheets, *bid_rule(name), k);
       ASSERT_EQ(fast.size(), plain.size());
       for (std::size_t a = 0; a < fast.size(); ++a) {
@@ -106,10 +112,71 @@ TEST(SequentialAuction, BlockedTeamMatesHaveNoInfluence) {
   const std::vector<BidSheet> sheets{a, b};
   const BidParameters k{.rho = 1.0, .gamma = 1.0, .weight = 1.0};
   const auto value = [&](const Clear& clear) {
-    return sequential_auction(BidTable(sheets, kField), bid_ia, k, Turn::kBestBid, clear).at(0).value;
+    return sequential_auction(BidTable(sheets, kField), bid_ia, k, clear).at(0).value;
   };
   EXPECT_DOUBLE_EQ(value([](Point, Point) { return false; }), 10.0 - 4.0);
   EXPECT_NEAR(value(always_clear), 10.0 - std::exp(-9.0 / 16.0) - 4.0, 1e-12);
+}
+
+TEST(SequentialAuction, RobotsUnderWayKeepTheirTasksWhenOnlyTheFinisherBids) {
+  BidSheet busy{.robot = 0, .pose = {1.5, 0.5, 0.0}, .speed = 1.0, .range = 4.0, .busy = true, .goal = Cell{5, 0}};
+  BidSheet free{.robot = 1, .pose = {2.5, 0.5, 0.0}, .speed = 1.0, .range = 4.0};
+  busy.entries = free.entries = {{{5, 0}, {5, 0}, 10.0F, 3.0F}, {{5, 1}, {5, 1}, 10.0F, 4.0F}};
+  const std::vector<BidSheet> sheets{busy, free};
+  const BidParameters k{.rho = 1.0, .weight = 1.0, .rebid = Rebid::kFinisher};
+  const auto awards = sequential_auction(BidTable(sheets, kField), bid_ia, k, always_clear);
+  ASSERT_EQ(awards.size(), 1U);
+  EXPECT_EQ(awards[0].robot, 1);
+  EXPECT_EQ(awards[0].task, (Cell{5, 1}));
+  EXPECT_NEAR(awards[0].value, 10.0 - std::exp(-1.0 / 16.0) - 4.0, 1e-12);
+}
+
+/// All tasks, one after the other, to whoever is there first: nothing cached.
+TEST(AllTasksAuction, EqualsPlainGreed) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto sheets = random_sheets(random, 1 + static_cast<int>(seed % 5), 30);
+    const BidTable table(sheets, kField);
+    std::vector<double> free_s(sheets.size(), 0.0);
+    std::vector<int> last(sheets.size(), -1);
+    std::vector<char> sold(table.tasks(), 0);
+    const auto awards = all_tasks_auction(table);
+    for (std::size_t stage = 0;; ++stage) {
+      double best = kInf;
+      std::size_t robot = 0, task = 0;
+      for (std::size_t i = 0; i < sheets.size(); ++i)
+        for (std::size_t p = 0; p < table.tasks(); ++p) {
+          if (sold[p] || table.entry(i, p) == nullptr) continue;
+          const double d = last[i] < 0 ? static_cast<double>(table.entry(i, p)->distance)
+                                       : distance(table.task_point(static_cast<std::size_t>(last[i])), table.task_point(p));
+          const double at = free_s[i] + d / table.sheet(i).speed;
+          if (at < best) best = at, robot = i, task = p;
+        }
+      if (best == kInf) {
+        EXPECT_EQ(awards.size(), stage);
+        break;
+      }
+      ASSERT_LT(stage, awards.size());
+      EXPECT_NEAR(awards[stage].value, -best, 1e-6);
+      free_s[robot] = best;
+      last[robot] = static_cast<int>(task);
+      sold[task] = 1;
+    }
+  }
+}
+
+TEST(RoundTime, IsNeverBelowTheOptimalAssignmentAndReachesIt) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto sheets = random_sheets(random, 1 + static_cast<int>(seed % 7), 20);
+    const BidTable table(sheets, kField);
+    const RoundTime auction = round_time(table, sequential_auction(table, bid_ea, {}, always_clear));
+    EXPECT_LE(auction.least_s, auction.awarded_s + 1e-9);
+    const RoundTime optimal = round_time(table, hungarian_assignment(table));
+    EXPECT_NEAR(optimal.least_s, optimal.awarded_s, 1e-9);
+  }
 }
 
 // Laws that every allocation keeps: one task a robot, one robot a task, only bids that were made, all tables.
@@ -119,9 +186,10 @@ TEST(Allocations, GiveOneTaskARobotAndOneRobotATask) {
     const auto sheets = random_sheets(random, 1 + static_cast<int>(seed % 7), static_cast<int>(seed % 11));
     const BidTable table(sheets, kField);
     const std::vector<std::vector<Award>> outcomes{
-        sequential_auction(table, bid_daa, {}, Turn::kBestBid, always_clear),
-        sequential_auction(table, bid_daa, {}, Turn::kRobotOrder, always_clear),
-        burgard_assignment(table, 1.0, always_clear), hungarian_assignment(table)};
+        sequential_auction(table, bid_daa, {}, always_clear),
+        sequential_auction(table, bid_daa, {.turn = Turn::kRobotOrder}, always_clear),
+        burgard_assignment(table, 1.0, always_clear), hungarian_assignment(table),
+        first_of_each(all_tasks_auction(table))};
     for (std::size_t k = 0; k < outcomes.size(); ++k) {
       SCOPED_TRACE(testing::Message() << "allocation " << k << ", seed " << seed);
       const auto& awards = outcomes[k];
@@ -143,8 +211,8 @@ TEST(SequentialAuction, RobotOrderServesTheFirstRobotFirst) {
   near.entries = {{{9, 9}, {9, 9}, 10.0F, 1.0F}};
   const std::vector<BidSheet> sheets{near, slow};  // order of arrival does not matter
   const BidTable table(sheets, kField);
-  EXPECT_EQ(sequential_auction(table, bid_ta, {}, Turn::kRobotOrder, always_clear).at(0).robot, 0);
-  EXPECT_EQ(sequential_auction(table, bid_ta, {}, Turn::kBestBid, always_clear).at(0).robot, 1);
+  EXPECT_EQ(sequential_auction(table, bid_ta, {.turn = Turn::kRobotOrder}, always_clear).at(0).robot, 0);
+  EXPECT_EQ(sequential_auction(table, bid_ta, {}, always_clear).at(0).robot, 1);
 }
 
 /// Least cost by trying everything: as many rows as possible, then the cheapest.

@@ -147,7 +147,7 @@ TEST_F(BadInput, Numbers) {
       {"--until", {"0", "1.5", "nan", "x"}},
       {"--max-time", {"0", "-1", "nan", "inf"}},
       {"--range-noise", {"-1", "nan"}},
-      {"--rho", {"nan", "inf"}},
+      {"--bids", {"rho=nan", "rho=inf", "alpha=-1", "rho", "roh=1", "gain=all"}},
       {"--resolution", {"0", "nan", "-0.1"}}};
   for (const auto& [flag, values] : cases)
     for (const char* value : values) expect_refused({"explore", "office1", flag, value}, {flag});
