@@ -13,8 +13,9 @@ namespace {
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 constexpr double kFar = 27.6;  // exp(-kFar) = 1e-12: an influence from farther away is none
 
-/// The running auction of one task a robot. Every robot's best bid is kept; an award changes U_p2 only around the winner's
-/// place and target, and only bids there are looked at again.
+/// The running auction of one task a robot, greedy and lazy (Minoux 1978): every robot's best bid is kept, an award changes
+/// U_p2 only around the winner's place and target, and where that may have lowered a best bid, its value stays as a bound
+/// until it is that robot's turn to be asked.
 class SequentialAuction {
  public:
   SequentialAuction(const BidTable& table, BidRule rule, const BidParameters& parameters, const Clear& clear)
@@ -48,7 +49,7 @@ class SequentialAuction {
 
   struct Best {
     std::size_t task = 0;
-    double value = kNone;
+    double value = -kNone;  // when stale: no bid of the robot is above it
     bool stale = true;
   };
   struct Source {
@@ -75,11 +76,14 @@ class SequentialAuction {
 
   /// The robot whose turn it is by its bid; n_ when nobody bids.
   std::size_t best_robot() {
-    std::size_t robot = n_;
-    double value = kNone;
-    for (std::size_t i = 0; i < n_; ++i)
-      if (!served_[i] && best(i).value > value) value = best_[i].value, robot = i;
-    return robot;
+    for (;;) {
+      std::size_t robot = n_;
+      double value = kNone;
+      for (std::size_t i = 0; i < n_; ++i)
+        if (!served_[i] && best_[i].value > value) value = best_[i].value, robot = i;
+      if (robot == n_ || !best_[robot].stale) return robot;
+      best(robot);
+    }
   }
 
   void sell(std::size_t task) {
@@ -112,13 +116,14 @@ class SequentialAuction {
   }
 
   void feel(std::size_t i) {
-    for (const auto& [p, change] : near_) u_p2_[i * m_ + p] += change;
     Best& b = best_[i];
-    for (const auto& near : near_) b.stale = b.stale || near.first == b.task;
-    if (b.stale) return;
-    for (const auto& near : near_) {
-      const double e = bid(i, near.first);
-      if (e > b.value || (e == b.value && e != kNone && near.first < b.task)) b = {near.first, e, false};
+    for (const auto& [p, change] : near_) {
+      u_p2_[i * m_ + p] += change;
+      if (change < 0.0) {
+        b.stale = b.stale || p == b.task;
+      } else if (const double e = bid(i, p); e > b.value || (e == b.value && e != kNone && p < b.task)) {
+        b = {p, e, b.stale};
+      }
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -21,6 +22,7 @@ std::vector<BidSheet> sheets(int robots, int tasks) {
   const auto cell = [&] { return Cell{static_cast<int>(random() % 400), static_cast<int>(random() % 400)}; };
   std::vector<Cell> cells;
   for (int p = 0; p < tasks; ++p) cells.push_back(cell());
+  std::sort(cells.begin(), cells.end(), [](Cell a, Cell b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   std::vector<BidSheet> result;
   for (int i = 0; i < robots; ++i) {
     const Point at = kGround.center(cell());
