@@ -17,22 +17,14 @@ namespace {
 
 using report::BenchResult;
 
+constexpr const char* kResultFile = "bench.json";
+
 struct Options {
   std::optional<int> trials;
   std::string shard;
   std::filesystem::path csv;
   std::vector<std::string> merge;
 };
-
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  int length = 0;
-  if (text.empty()) return shard;
-  if (std::sscanf(text.c_str(), "%d/%d%n", &shard.index, &shard.of, &length) != 2 ||
-      length != static_cast<int>(text.size()) || shard.index < 1 || shard.of < shard.index)
-    throw InputError(fmt::format("--shard {}: expected i/n with 1 <= i <= n, as in 2/4", text));
-  return shard;
-}
 
 const BenchInfo* info_of(const std::string& name) {
   for (const BenchInfo& info : benches())
@@ -57,30 +49,15 @@ std::string text_of(const BenchResult& result, const std::vector<report::Table>&
   return text;
 }
 
-void write_folder(const BenchResult& result, const std::vector<report::Table>& tables, const std::filesystem::path& dir) {
+void write_folder(const BenchResult& result, const std::vector<report::Table>& tables, const std::filesystem::path& dir,
+                  const std::string& json_name) {
   const BenchInfo* info = info_of(result.design.bench);
   const std::string figures = info != nullptr && info->figures != nullptr ? info->figures(result) : std::string();
   std::filesystem::create_directories(dir);
   report::write_file(dir / "rows.csv", bench_csv(result));
   report::write_file(dir / "tables.txt", text_of(result, tables));
   report::write_file(dir / "report.html", bench_html(result, tables, figures));
-  report::write_file(dir / "bench.json", report::to_text(bench_json(result), 2) + '\n');
-}
-
-void show(const BenchResult& result, const Options& o, Context& ctx) {
-  const auto tables = all_tables(result);
-  if (!o.csv.empty()) report::write_file(o.csv, bench_csv(result));
-  if (!ctx.out.empty()) write_folder(result, tables, ctx.out);
-  if (ctx.json) {
-    fmt::print("{}\n", report::to_text(bench_json(result), 2));
-  } else if (!ctx.quiet) {
-    fmt::print("{}", text_of(result, tables));
-    if (!ctx.out.empty()) fmt::print("report: {}\n", (ctx.out / "report.html").string());
-  }
-  if (result.interrupted) {
-    fmt::print(stderr, "outrider: interrupted; {} rows are there\n", result.rows.size());
-    ctx.exit_code = kInterrupted;
-  }
+  report::write_file(dir / json_name, report::to_text(bench_json(result), 2) + '\n');
 }
 
 void run(const BuildExperiment& build, const Options& o, Context& ctx) {
@@ -94,23 +71,55 @@ void run(const BuildExperiment& build, const Options& o, Context& ctx) {
         progress.update(static_cast<double>(done) / static_cast<double>(all), fmt::format("{} of {}", done, all));
       });
   result.timing["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  show(result, o, ctx);
+  if (!o.csv.empty()) report::write_file(o.csv, bench_csv(result));
+  show_result(result, kResultFile, ctx);
 }
 
 void merge(const Options& o, Context& ctx) {
   if (!ctx.out.empty()) report::check_out_dir(ctx.out, ctx.force);
+  const BenchResult result = merge_files(o.merge);
+  if (!o.csv.empty()) report::write_file(o.csv, bench_csv(result));
+  show_result(result, kResultFile, ctx);
+}
+
+}  // namespace
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  int length = 0;
+  if (text.empty()) return shard;
+  if (std::sscanf(text.c_str(), "%d/%d%n", &shard.index, &shard.of, &length) != 2 ||
+      length != static_cast<int>(text.size()) || shard.index < 1 || shard.of < shard.index)
+    throw InputError(fmt::format("--shard {}: expected i/n with 1 <= i <= n, as in 2/4", text));
+  return shard;
+}
+
+BenchResult merge_files(const std::vector<std::string>& files) {
   std::vector<BenchResult> parts;
-  for (const std::string& name : o.merge) {
+  for (const std::string& name : files) {
     std::ifstream file(name);
     if (!file || std::filesystem::is_directory(name)) throw InputError(name + ": cannot read the file");
     report::Json json = report::Json::parse(file, nullptr, false);
     if (json.is_discarded()) throw InputError(name + ": not JSON; expected a result of 'outrider bench ... --json'");
     parts.push_back(report::parse_bench(json, name));
   }
-  show(report::merge_benches(std::move(parts), o.merge), o, ctx);
+  return report::merge_benches(std::move(parts), files);
 }
 
-}  // namespace
+void show_result(const BenchResult& result, const std::string& json_name, Context& ctx) {
+  const auto tables = all_tables(result);
+  if (!ctx.out.empty()) write_folder(result, tables, ctx.out, json_name);
+  if (ctx.json) {
+    fmt::print("{}\n", report::to_text(bench_json(result), 2));
+  } else if (!ctx.quiet) {
+    fmt::print("{}", text_of(result, tables));
+    if (!ctx.out.empty()) fmt::print("report: {}\n", (ctx.out / "report.html").string());
+  }
+  if (result.interrupted) {
+    fmt::print(stderr, "outrider: interrupted; {} rows are there\n", result.rows.size());
+    ctx.exit_code = kInterrupted;
+  }
+}
 
 const std::vector<BenchInfo>& benches() {
   static const std::vector<BenchInfo> all{bench_dai2014(), bench_matignon2012()};

@@ -65,6 +65,15 @@ report::BenchResult run_experiment(const Experiment& experiment, std::uint64_t s
                                    const std::atomic<bool>& interrupted,
                                    const std::function<void(std::size_t, std::size_t)>& progress);
 
+/// "i/n" -> a shard; "" is the whole. Throws InputError.
+Shard parse_shard(const std::string& text);
+
+/// Joins the --json results of all shards, as files, into the whole. Throws InputError naming the file.
+report::BenchResult merge_files(const std::vector<std::string>& files);
+
+/// Shows a result as --json, or its tables; writes rows.csv, tables.txt, report.html and `json_name` into --out.
+void show_result(const report::BenchResult& result, const std::string& json_name, Context& ctx);
+
 /// The seed of a trial: of the command's seed, the case and the number.
 std::uint64_t trial_seed(std::uint64_t seed, const std::string& case_name, int number);
 

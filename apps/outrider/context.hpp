@@ -30,7 +30,9 @@ struct Context {
 
 /// Adds --json -q -v to a verb.
 void add_output_flags(CLI::App& verb, Context& ctx);
-/// Adds --out --force --seed --jobs to a verb that makes a run folder.
+/// Adds these and --out --force --jobs to a verb that makes a folder.
+void add_work_flags(CLI::App& verb, Context& ctx);
+/// Adds these and --seed.
 void add_run_flags(CLI::App& verb, Context& ctx);
 
 /// Accepts finite numbers from `low` to `high` only (CLI::Range lets nan through).
@@ -41,6 +43,7 @@ void add_explore(CLI::App& app, Context& ctx);
 void add_replay(CLI::App& app, Context& ctx);
 void add_report(CLI::App& app, Context& ctx);
 void add_bench(CLI::App& app, Context& ctx);
+void add_sweep(CLI::App& app, Context& ctx);
 void add_map(CLI::App& app, Context& ctx);
 void add_list(CLI::App& app, Context& ctx);
 

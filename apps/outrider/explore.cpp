@@ -47,7 +47,7 @@ MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, co
 
 Json configuration(const ExploreOptions& o, const MissionSettings& s) {
   return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms}, {"sensing", o.sensing},
-          {"localization", o.localization}, {"until", o.until}, {"max_time_s", o.max_time},
+          {"localization", o.localization}, {"starts", o.starts}, {"until", o.until}, {"max_time_s", o.max_time},
           {"return_home", o.return_home}, {"fault", o.fault}, {"step_s", s.sim.dt}, {"range_noise_m", o.range_noise},
           {"scan_rate_hz", s.sim.scan_rate}, {"bids", auction::bid_options_text(o.bids)}};
 }
@@ -108,7 +108,23 @@ void explore(const ExploreOptions& o, Context& ctx) {
   ctx.exit_code = exit_code(document["result"]);
 }
 
+/// The team on its starts.
+std::vector<RobotSpec> team_of(const ExploreOptions& o, const sim::World& world, std::uint64_t seed) {
+  TeamFile team = o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file);
+  if (o.starts == "world") return place_team(world, std::move(team));
+  std::vector<double> radii;
+  for (const RobotSpec& robot : team.robots) radii.push_back(robot.radius);
+  sim::World drawn = world;
+  drawn.starts = sim::random_starts(world, radii, seed);
+  return place_team(drawn, std::move(team));
+}
+
 }  // namespace
+
+void check_exploration(const ExploreOptions& o, const sim::World& world) {
+  constexpr std::uint64_t kAnySeed = 1;
+  mission_settings(o, kAnySeed, team_of(o, world, kAnySeed));
+}
 
 sim::World open_exploration_world(const ExploreOptions& o) {
   sim::World world = open_world(o.world, o.resolution);
@@ -118,8 +134,7 @@ sim::World open_exploration_world(const ExploreOptions& o) {
 
 report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& world, std::uint64_t seed,
                                   bool record_events, const explorer::MissionProgress& progress) {
-  const std::vector<RobotSpec> team =
-      place_team(world, o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file));
+  const std::vector<RobotSpec> team = team_of(o, world, seed);
   MissionSettings settings = mission_settings(o, seed, team);
   settings.record_events = record_events;
   const auto begin = std::chrono::steady_clock::now();
@@ -150,6 +165,9 @@ void add_explore_options(CLI::App& verb, ExploreOptions& o) {
   auto* robots = verb.add_option("--robots", o.robots, "size of the team (default: the world's usual team)")
                      ->check(CLI::Range(1, 1000))->type_name("N");
   verb.add_option("--team", o.team_file, "team file (YAML)")->type_name("FILE")->excludes(robots);
+  verb.add_option("--starts", o.starts, "where robots begin that the team file gives no start: the world's places, or "
+                   "places drawn from the seed")
+      ->check(CLI::IsMember({"world", "random"}))->capture_default_str()->type_name("KIND");
   verb.add_option("--coordinator", o.coordinator, "who goes where; see 'outrider list coordinators'")
       ->capture_default_str()->type_name("NAME");
   verb.add_option("--comms", o.comms, "radio: ideal, none, range:R, los, loss:P, delay:S, breaks:NxS[@WITHIN], "

@@ -21,6 +21,7 @@ struct ExploreOptions {
   int robots = 0;
   std::filesystem::path team_file;
   std::string coordinator = "daa", comms = "ideal", sensing = "disc", localization = "perfect", fault;
+  std::string starts = "world";
   double until = 1.0, max_time = 0.0, range_noise = 0.0;
   bool return_home = false, octomap = false;
   auction::BidParameters bids;
@@ -31,6 +32,10 @@ void add_explore_options(CLI::App& verb, ExploreOptions& o);
 
 /// The world as the simulator takes it: what is unknown in a map is solid. Throws InputError.
 sim::World open_exploration_world(const ExploreOptions& o);
+
+/// Throws InputError when the flags do not fit together, or not to the world: what run_exploration would find at its
+/// beginning.
+void check_exploration(const ExploreOptions& o, const sim::World& world);
 
 /// Runs the mission that the flags ask for in `world`. Throws InputError when they do not fit together. Thread-safe.
 report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& world, std::uint64_t seed,

@@ -48,14 +48,18 @@ void add_output_flags(CLI::App& verb, Context& ctx) {
   verb.add_flag("-v,--verbose", ctx.verbose, "say more on stderr");
 }
 
-void add_run_flags(CLI::App& verb, Context& ctx) {
+void add_work_flags(CLI::App& verb, Context& ctx) {
   add_output_flags(verb, ctx);
   verb.add_option("--out", ctx.out, "run folder to write; must not exist or be empty")->check(kNotEmpty)->type_name("DIR");
   verb.add_flag("--force", ctx.force, "replace an existing run folder");
-  verb.add_option("--seed", ctx.seed, "every random choice comes from it")
-      ->check(kWholeNumber)->capture_default_str()->type_name("N");
   verb.add_option("--jobs", ctx.jobs, "threads; results do not depend on it")
       ->check(CLI::Range(1, 1024))->capture_default_str()->type_name("N");
+}
+
+void add_run_flags(CLI::App& verb, Context& ctx) {
+  add_work_flags(verb, ctx);
+  verb.add_option("--seed", ctx.seed, "every random choice comes from it")
+      ->check(kWholeNumber)->capture_default_str()->type_name("N");
 }
 
 namespace {
@@ -117,6 +121,7 @@ int run(int argc, char** argv) {
   add_replay(app, ctx);
   add_report(app, ctx);
   add_bench(app, ctx);
+  add_sweep(app, ctx);
   add_map(app, ctx);
   add_list(app, ctx);
   try {

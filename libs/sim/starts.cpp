@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <queue>
+#include <random>
 #include <tuple>
 
 #include "sim/walls.hpp"
@@ -138,6 +139,34 @@ std::vector<Pose2> spread_starts(const World& world, std::span<const double> rad
   std::vector<Pose2> poses;
   poses.reserve(placed.size());
   for (const Placed& robot : placed) poses.push_back(robot.pose);
+  return poses;
+}
+
+std::vector<Pose2> random_starts(const World& world, std::span<const double> radii, std::uint64_t seed) {
+  if (radii.empty()) return {};
+  const GridGeometry& g = world.map.geometry();
+  const Walls widest(world.map, *std::max_element(radii.begin(), radii.end()));
+  const Sources sources = sources_of(world, widest);
+  std::vector<Cell> free;
+  spread(widest, g, sources.cells, [&](Cell c, std::size_t) {
+    free.push_back(c);
+    return true;
+  });
+  std::mt19937_64 random(seed);
+  std::vector<Placed> placed;
+  std::vector<Pose2> poses;
+  for (const double radius : radii) {
+    // Cells too near to a robot that stands already are too near for good: they are dropped as they are drawn.
+    for (bool found = false; !found;) {
+      if (free.empty()) throw InputError(fmt::format("no room for {} robots at random starts", radii.size()));
+      std::swap(free[random() % free.size()], free.back());
+      const Point p = g.center(free.back());
+      free.pop_back();
+      found = apart(placed, p, radius, kSpare);
+      if (found) placed.push_back({{p.x, p.y, sources.poses.front().theta}, radius});
+    }
+    poses.push_back(placed.back().pose);
+  }
   return poses;
 }
 

@@ -2,6 +2,7 @@
 // Worlds to simulate in: a true map, start poses, the usual team. A handful is compiled into the program from
 // datasets/*.txt; the same text format is read from files.
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,5 +50,10 @@ World parse_world(std::string_view text, std::string_view source, double resolut
 /// world that overlaps an earlier disc is moved the same way; one in a wall or off the map is an InputError that names
 /// robot and position, and so is a world without room for everybody. Deterministic.
 std::vector<Pose2> spread_starts(const World& world, std::span<const double> radii);
+
+/// Start poses drawn evenly over the cells that all robots can reach from the world's own starts (or, without any, over
+/// its largest free region), clear of walls and of one another as above, facing the world's first start's way. The same
+/// world, radii and seed give the same poses. Throws InputError when there is no room. O(cells log cells).
+std::vector<Pose2> random_starts(const World& world, std::span<const double> radii, std::uint64_t seed);
 
 }  // namespace outrider::sim

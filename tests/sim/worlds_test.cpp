@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <queue>
+#include <set>
 
 #include "sim/simulator.hpp"
 #include "sim/walls.hpp"
@@ -207,6 +208,24 @@ TEST(SpreadStarts, WithoutAnyBeginsInTheLargestRegion) {
   for (const Pose2& start : starts) EXPECT_GT(start.x, 3.0);
   EXPECT_NO_THROW(Simulator(world.map, {{"a", starts[0], 1, 1, 1, 1, 0.3}, {"b", starts[1], 1, 1, 1, 1, 0.3}}, {}));
   EXPECT_TRUE(spread_starts(world, {}).empty());
+}
+
+TEST(RandomStarts, ReachTheWholeSideOfTheWallAndNoMore) {
+  const World world = parse_world(".0..#...\n....#...\n....#...\n", "w");
+  const std::vector<double> radii(2, 0.3);
+  std::set<std::pair<double, double>> places;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto starts = random_starts(world, radii, seed);
+    ASSERT_EQ(starts.size(), 2U);
+    EXPECT_GE(distance(starts[0].position(), starts[1].position()), 0.6) << "seed " << seed;
+    for (const Pose2& start : starts) {
+      EXPECT_LT(start.x, 4.0) << "seed " << seed;
+      places.insert({start.x, start.y});
+    }
+    EXPECT_EQ(starts, random_starts(world, radii, seed));
+  }
+  EXPECT_EQ(places.size(), 12U);
+  EXPECT_THROW((void)random_starts(world, std::vector<double>(13, 0.4), 1), InputError);
 }
 
 }  // namespace
