@@ -13,6 +13,7 @@ struct TopoRobot {
   std::string name;
   int at = 0;          ///< index of its first waypoint, in its own map
   double speed = 1.0;  ///< divides all costs
+  std::vector<int> current;  ///< goals that it already has, as indices of TopoMission::goals
   std::shared_ptr<const TopologicalMap> own;  ///< its own map when it is not the mission's; waypoints match by id
 };
 

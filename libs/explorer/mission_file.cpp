@@ -48,6 +48,8 @@ class MissionReader {
     if (!whole) return std::move(mission_);
     for (const YAML::Node& node : list(root, "robots")) robot(node);
     for (const YAML::Node& node : list(root, "goals", true)) goal(node);
+    std::size_t robot_index = 0;
+    for (const YAML::Node& node : root["robots"]) current_goals(node, mission_.robots[robot_index++]);
     return std::move(mission_);
   }
 
@@ -183,7 +185,7 @@ class MissionReader {
 
   void robot(const YAML::Node& node) {
     if (!node.IsMap()) in_.fail(node, "expected a robot as {name, at}");
-    in_.known_keys(node, {"name", "at", "speed", "map"});
+    in_.known_keys(node, {"name", "at", "speed", "map", "goals"});
     TopoRobot r;
     r.name = node["name"] ? in_.text(node["name"], "name") : fmt::format("robot{}", mission_.robots.size() + 1);
     constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
@@ -206,8 +208,23 @@ class MissionReader {
     mission_.goals.push_back(w);
   }
 
+  /// The goals that a robot has from before.
+  void current_goals(const YAML::Node& node, TopoRobot& robot) {
+    if (!node["goals"]) return;
+    if (!node["goals"].IsSequence()) in_.fail(node["goals"], "goals: expected a list of waypoint ids");
+    for (const YAML::Node& entry : node["goals"]) {
+      const int w = index_of(entry, "goals", mission_.map);
+      const auto at = std::find(mission_.goals.begin(), mission_.goals.end(), w);
+      if (at == mission_.goals.end()) in_.fail(entry, fmt::format("goals: '{}' is no goal of the mission", name(w)));
+      const auto goal = static_cast<int>(at - mission_.goals.begin());
+      if (!owned_.insert(goal).second) in_.fail(entry, fmt::format("goals: '{}' has an owner already", name(w)));
+      robot.current.push_back(goal);
+    }
+  }
+
   YamlReader in_;
   TopoMission mission_;
+  std::set<int> owned_;
   std::set<std::string> ids_;
   std::set<std::pair<int, int>> pairs_;
 };
@@ -261,7 +278,10 @@ std::string mission_text(const TopoMission& mission) {
   text += mission.robots.empty() ? "robots: []\n" : "robots:\n";
   for (const TopoRobot& r : mission.robots) {
     text += fmt::format("  - {{name: {}, at: {}", r.name, id(r.at));
-    text += r.speed != 1.0 ? fmt::format(", speed: {}}}\n", r.speed) : "}\n";
+    if (r.speed != 1.0) text += fmt::format(", speed: {}", r.speed);
+    for (std::size_t k = 0; k < r.current.size(); ++k)
+      text += (k ? ", " : ", goals: [") + id(mission.goals[static_cast<std::size_t>(r.current[k])]);
+    text += r.current.empty() ? "}\n" : "]}\n";
   }
   text += "goals: [";
   for (std::size_t g = 0; g < mission.goals.size(); ++g) text += (g ? ", " : "") + id(mission.goals[g]);

@@ -19,6 +19,12 @@ struct SizeOf {
   std::size_t operator()(const Awards& m) const {
     return kHeader + kRound + m.bidders.size() * 4 + m.awards.size() * 28;
   }
+  std::size_t operator()(const ClaimSheet& m) const {
+    return kHeader + kRound + 14 + m.claims.size() * 8 + m.prices.size() * 8;
+  }
+  std::size_t operator()(const TaskOffer&) const { return kHeader + kRound + 24; }
+  std::size_t operator()(const TaskAnswer&) const { return kHeader + kRound + 9; }
+  std::size_t operator()(const PlanSheet& m) const { return kHeader + kRound + 25 + m.owners.size() * 4; }
 };
 
 }  // namespace

@@ -127,7 +127,68 @@ struct Awards {
   std::vector<Award> awards;
 };
 
-using Message = std::variant<StatusMessage, MapUpdate, MapDigest, TileRequest, MapTile, RoundOpen, BidSheet, Awards>;
+/// Who owns a task, as far as the sender knows. Of two claims the one of the higher epoch holds; at equal epochs that
+/// of the lower robot, and none loses to any.
+struct Claim {
+  static constexpr RobotId kNobody = -1;
+  std::uint32_t epoch = 0;  ///< grows with every change of hands
+  RobotId owner = kNobody;
+  friend bool operator==(const Claim&, const Claim&) = default;
+};
+
+/// D-SSA (Lozenguez 2015, section 5.3): all that a robot knows of a stretch of tasks, and what they would cost it.
+/// Repeated until the auction is over, so any one of them may be lost.
+struct ClaimSheet {
+  RoundId round;
+  RobotId robot = 0;
+  std::uint32_t seq = 0;       ///< grows by one a sheet
+  std::uint32_t first = 0;     ///< number of the first task
+  std::vector<Claim> claims;   ///< at most kMostClaims
+  std::vector<double> prices;  ///< r_g - u_i(G_i, g) of each (eq. 9); infinity: cannot do it
+  std::uint64_t hash = 0;      ///< of all the sender's claims
+  bool content = false;        ///< everybody told it the same claims, and it knows nothing better
+  bool done = false;           ///< everybody told it that they are content
+  static constexpr std::size_t kMostClaims = 64;
+};
+
+/// "Take this task of mine." Its owner changes nothing else until the answer is there.
+struct TaskOffer {
+  RoundId round;
+  RobotId robot = 0;
+  RobotId to = 0;
+  std::uint32_t serial = 0;  ///< of the sender's offers, grows
+  std::uint32_t task = 0;
+  std::uint32_t epoch = 0;   ///< of the sender's claim
+  double price = 0.0;        ///< what the sender saves
+};
+
+struct TaskAnswer {
+  enum class Verdict : std::uint8_t {
+    kAccepted,  ///< the task is mine now
+    kDeclined,  ///< it would cost me more than it saves you
+    kBusy,      ///< I am waiting for an answer myself
+  };
+  RoundId round;
+  RobotId robot = 0;
+  RobotId to = 0;
+  std::uint32_t serial = 0;  ///< of the offer
+  Verdict verdict = Verdict::kBusy;
+};
+
+/// The best whole allocation that the sender knows of. Repeated until all know the same.
+struct PlanSheet {
+  RoundId round;
+  RobotId robot = 0;
+  std::uint32_t seq = 0;
+  double makespan = 0.0;         ///< of the longest mission in it
+  double total = 0.0;            ///< of all missions
+  std::vector<RobotId> owners;   ///< of each task; Claim::kNobody: nobody can do it. At most TaskSet::kMost
+  std::uint64_t without = 0;     ///< robots (as bits) that the sender takes for dead
+  bool searched = false;         ///< the sender has nothing left to try
+};
+
+using Message = std::variant<StatusMessage, MapUpdate, MapDigest, TileRequest, MapTile, RoundOpen, BidSheet, Awards,
+                             ClaimSheet, TaskOffer, TaskAnswer, PlanSheet>;
 
 /// Messages that only serve to keep maps equal.
 inline bool is_map_traffic(const Message& message) {
