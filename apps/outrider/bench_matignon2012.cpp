@@ -59,11 +59,12 @@ std::vector<Condition> conditions() {
 
 /// A world with what a trial needs to begin in it.
 struct Ground {
-  Ground(sim::World given, const Options& o) : world(std::move(given)) {
+  Ground(sim::World w, const Options& o) : world(std::move(w)) {
     world.map = explorer::solid_map(std::move(world.map));
     const int usual = world.team.empty() ? kTeam : static_cast<int>(world.team.size());
     robots = static_cast<std::size_t>(o.robots.value_or(usual));
-    const std::vector<double> radii(robots, std::max(o.radius, kApart / 2.0));
+    const bool given = world.starts.size() >= robots;
+    const std::vector<double> radii(robots, given ? o.radius : std::max(o.radius, kApart / 2.0));
     starts = sim::spread_starts(world, radii);
     walls.emplace(world.map, o.radius);
     break_s = o.break_s.value_or(world.name == "office1" ? 25.0 : 40.0);
