@@ -19,6 +19,7 @@ struct Neighbour {
   std::vector<Cell> way;         ///< where it is about to drive, when known
   int priority = 0;              ///< lower goes first
   std::optional<RobotId> asks;   ///< whom it asks to make room
+  bool heard = false;            ///< recently: way, priority and question are its own; else they are guesses
 };
 
 /// Shortest paths that keep clear of standing team-mates, and places to make room. Owns its workspace.

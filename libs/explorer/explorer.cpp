@@ -37,6 +37,7 @@ void Explorer::sense(double now_s) {
   pose_ = sensing.pose;
   arrived_ = sensing.arrived;
   blocked_ = sensing.blocked;
+  note_trail();
   sightings_ = sensing.sightings;
   take_in(sensing);
   changed_ = map_.take_changed();
@@ -131,6 +132,7 @@ void Explorer::act(double now_s) {
   }
   give_way(now_s);
   resolve_block(now_s);
+  coordinate_locally(now_s);
   if (status_news_ || now_s >= status_due_s_) send_status(now_s);
   for (Message& message : exchange_.speak(now_s)) bus_.send(std::move(message));
   settled_ = exchange_.settled(now_s);
@@ -243,11 +245,11 @@ void Explorer::nothing_left(double now_s) {
 
 void Explorer::go_home(double now_s) {
   const Cell home = map_.states().geometry().cell_of(spec_.start.position());
-  if (here() == home && arrived_) {
-    phase_ = Phase::kDone;
+  if (here() == home && arrived_ && !held_) {
+    phase_ = map_news_s_ > refused_s_ ? Phase::kExploring : Phase::kDone;  // there may be something left after all
     priority_ = base_priority();
     sink_(now_s, PhaseEvent{self_, "home"});
-  } else if (arrived_ && !making_room_for_) {
+  } else if (arrived_ && !making_room_for_ && !held_) {
     plan(home);
   }
 }

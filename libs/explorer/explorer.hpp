@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "decision/local_coordination.hpp"
 #include "decision/traffic.hpp"
 #include "explorer/coordinator.hpp"
 #include "explorer/map_exchange.hpp"
@@ -31,6 +32,7 @@ struct ExplorerSettings {
   double silent_after = 2.0;     ///< a team-mate not heard for this long does not bid [s]
   bool return_home = false;      ///< drive back to the start when nothing is left
   TaskGrain grain;
+  decision::LocalThresholds local;
 };
 
 struct GoalEvent {
@@ -110,7 +112,15 @@ class Explorer {
   void trim_way();
   void give_way(double now_s);
   void resolve_block(double now_s);
-  std::vector<decision::Neighbour> neighbours() const;
+  void coordinate_locally(double now_s);
+  decision::LocalAction local_action(const decision::Neighbour& mate) const;
+  bool make_room(const decision::Neighbour& asker, std::span<const decision::Neighbour> around, double now_s);
+  void keep_making_room(std::span<const decision::Neighbour> around, double now_s);
+  void retreat_from(const decision::Neighbour& silent, std::span<const decision::Neighbour> around, double now_s);
+  void step_aside(std::span<const decision::Neighbour> around, double now_s);
+  std::vector<Cell> straight_on(Point from) const;
+  void note_trail();
+  std::vector<decision::Neighbour> neighbours(double now_s) const;
   int base_priority() const;
   Cell here() const { return map_.states().geometry().cell_of(pose_.position()); }
   Cell base() const;
@@ -131,6 +141,7 @@ class Explorer {
   Grid<std::uint8_t> seen_;            // 1 where the own sensor saw the cell
   decision::Passability passable_;
   decision::Traffic traffic_;
+  decision::LocalCoordination local_;
   TaskBoard board_;
   auction::ExploredRate rate_;
   std::vector<std::uint32_t> observed_, changed_;
@@ -160,7 +171,14 @@ class Explorer {
   double last_try_s_ = -1e9;
   std::optional<RobotId> asks_;        // whom we ask to make room
   std::optional<RobotId> making_room_for_;
+  bool room_is_for_silent_ = false;
   double making_room_until_s_ = 0.0;
+  double touched_since_s_ = 0.0;       // by somebody silent, while idle
+  int stood_aside_ = 0;                // times since there was something to do
+  bool held_ = false;                  // stopped on the way, to let somebody pass
+  double wait_until_s_ = -1e9;         // nobody is waited for longer than this ...
+  double no_wait_until_s_ = -1e9;      // ... and then not again until this
+  std::vector<Cell> trail_;            // cells driven through of late, the current one last
   int priority_ = 0;
 };
 
