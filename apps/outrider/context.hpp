@@ -38,13 +38,11 @@ void add_run_flags(CLI::App& verb, Context& ctx);
 /// Accepts finite numbers from `low` to `high` only (CLI::Range lets nan through).
 CLI::Validator number_in(double low, double high);
 
-// One file a verb. Each adds its subcommand; the callback runs it and sets ctx.exit_code.
+// One file a verb (those that need the map room: maps_module.hpp). Each adds its subcommand; the callback runs it and sets ctx.exit_code.
 void add_explore(CLI::App& app, Context& ctx);
-void add_replay(CLI::App& app, Context& ctx);
 void add_report(CLI::App& app, Context& ctx);
 void add_bench(CLI::App& app, Context& ctx);
 void add_sweep(CLI::App& app, Context& ctx);
-void add_map(CLI::App& app, Context& ctx);
 void add_list(CLI::App& app, Context& ctx);
 
 }  // namespace outrider::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <functional>
 #include <sstream>
 
 #include "auction/bid_options.hpp"
@@ -10,6 +11,7 @@
 #include "context.hpp"
 #include "explore.hpp"
 #include "explorer/mission.hpp"
+#include "maps_module.hpp"
 #include "mission_record.hpp"
 #include "progress.hpp"
 #include "report/metrics.hpp"
@@ -35,6 +37,7 @@ MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, co
       std::min_element(team.begin(), team.end(), [](const auto& a, const auto& b) { return a.range < b.range; })->range;
   settings.explorer.return_home = o.return_home;
   settings.sim.lidar = o.sensing == "lidar";
+  if (settings.sim.lidar) settings.make_mapper = std::bind_front(&MapsModule::make_scan_mapper, &maps_module());
   settings.sim.range_noise = o.range_noise;
   settings.sim.seed = seed;
   settings.until = o.until;
@@ -101,7 +104,7 @@ void explore(const ExploreOptions& o, Context& ctx) {
   record.command = ctx.argv;
   if (!ctx.out.empty())
     report::write_run_folder(record, ctx.out, {ctx.force},
-                             [&](const auto& folder) { write_maps(record, folder, o.octomap); });
+                             [&](const auto& folder) { maps_module().write_maps(record, folder, o.octomap); });
   const Json document = report::run_json(record);
   if (ctx.json) fmt::print("{}\n", document.dump(2));
   else if (!ctx.quiet) print_summary(record, document["result"], ctx);

@@ -3,64 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 
 #include "context.hpp"
+#include "maps_module.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"
 
 namespace outrider::app {
-
-CLI::Validator number_in(double low, double high) {
-  return {[low, high](std::string& text) {
-            double value = 0.0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            const bool ok = error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
-            return ok ? std::string() : fmt::format("expected a number from {} to {}, not '{}'", low, high, text);
-          },
-          fmt::format("in [{} - {}]", low, high)};
-}
-
-namespace {
-
-/// CLI11 would read -1, and all that is too large, as the largest seed there is.
-const CLI::Validator kWholeNumber{[](std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool ok = error == std::errc() && end == text.data() + text.size();
-  return ok ? std::string() : fmt::format("expected a whole number from 0 to 2^64 - 1, not '{}'", text);
-}, ""};
-
-/// An empty name is most often a shell variable that was never set; the run would be lost.
-const CLI::Validator kNotEmpty{[](std::string& text) {
-  return text.empty() ? std::string("expected the name of a folder, not nothing") : std::string();
-}, ""};
-
-}  // namespace
-
-void add_output_flags(CLI::App& verb, Context& ctx) {
-  verb.add_flag("--json", ctx.json, "print the result as one JSON document on stdout");
-  verb.add_flag("-q,--quiet", ctx.quiet, "no progress, no summary");
-  verb.add_flag("-v,--verbose", ctx.verbose, "say more on stderr");
-}
-
-void add_work_flags(CLI::App& verb, Context& ctx) {
-  add_output_flags(verb, ctx);
-  verb.add_option("--out", ctx.out, "run folder to write; must not exist or be empty")->check(kNotEmpty)->type_name("DIR");
-  verb.add_flag("--force", ctx.force, "replace an existing run folder");
-  verb.add_option("--jobs", ctx.jobs, "threads; results do not depend on it")
-      ->check(CLI::Range(1, 1024))->capture_default_str()->type_name("N");
-}
-
-void add_run_flags(CLI::App& verb, Context& ctx) {
-  add_work_flags(verb, ctx);
-  verb.add_option("--seed", ctx.seed, "every random choice comes from it")
-      ->check(kWholeNumber)->capture_default_str()->type_name("N");
-}
 
 namespace {
 
@@ -107,6 +62,15 @@ std::string usage_hint(const CLI::App& app, const std::vector<std::string>& argv
   return "";
 }
 
+/// The verbs of the maps module, which is loaded only when one of them is called.
+void add_module_verbs(CLI::App& app, Context& ctx) {
+  constexpr std::array kVerbs{kReplay, kMap};
+  const std::string called = ctx.argv.size() > 1 ? ctx.argv[1] : "";
+  if (std::any_of(kVerbs.begin(), kVerbs.end(), [&](const ModuleVerb& verb) { return called == verb.name; }))
+    return maps_module().add_verbs(app, ctx);
+  for (const ModuleVerb& verb : kVerbs) app.add_subcommand(verb.name, verb.about);
+}
+
 int run(int argc, char** argv) {
   Context ctx;
   ctx.argv.assign(argv, argv + argc);
@@ -118,11 +82,10 @@ int run(int argc, char** argv) {
   app.footer("outrider VERB --help explains a verb. Exit codes: 0 done, 1 aim not reached, 2 bad usage or input, "
              "130 interrupted.");
   add_explore(app, ctx);
-  add_replay(app, ctx);
+  add_module_verbs(app, ctx);
   add_report(app, ctx);
   add_bench(app, ctx);
   add_sweep(app, ctx);
-  add_map(app, ctx);
   add_list(app, ctx);
   try {
     app.parse(argc, argv);

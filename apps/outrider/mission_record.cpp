@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "slam_glue/map_files.hpp"
 
 namespace outrider::app {
 namespace {
@@ -136,18 +135,6 @@ report::RunRecord mission_record(explorer::MissionResult&& result, const explore
   record.known_since = std::move(result.known_since);
   record.playback_step_s = result.playback_step_s;
   return record;
-}
-
-void write_maps(const report::RunRecord& record, const std::filesystem::path& folder, bool octomap) {
-  const auto write = [](const OccupancyGrid& map, const std::filesystem::path& directory) {
-    std::filesystem::create_directories(directory);
-    slam_glue::save_ros_map(map, directory / "map.yaml");
-  };
-  write(record.map, folder);
-  slam_glue::save_gridmap(record.map, folder / "map.gridmap");
-  if (octomap) slam_glue::save_octomap(record.map, folder / "map.bt", 0.0);
-  for (const report::RobotRecord& robot : record.robots)
-    if (robot.map) write(*robot.map, folder / "robots" / robot.spec.name);
 }
 
 }  // namespace outrider::app

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "slam_glue/map_files.hpp"
+#include "maps_module.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"
 
@@ -32,7 +32,7 @@ sim::World open_world(const std::string& source, std::optional<double> resolutio
   if (!std::filesystem::exists(path))
     throw InputError(fmt::format("no world or map file called '{}'{}", source, suggestion(source, names)));
   if (path.extension() == ".txt") return read_text_world(path, resolution);
-  slam_glue::LoadedMap loaded = slam_glue::load_map(path, {resolution});
+  slam_glue::LoadedMap loaded = maps_module().load_map(path, {resolution});
   sim::World world;
   world.name = path.stem().string();
   world.provenance = path.filename().string();

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "explorer/referee.hpp"
-#include "explorer/scan_mapper.hpp"
 
 namespace outrider::explorer {
 namespace {
@@ -30,7 +29,7 @@ class Mission {
       const auto id = static_cast<RobotId>(r);
       robots_.push_back(std::make_unique<Explorer>(
           id, team[r], truth.geometry(), settings.explorer, simulator_.body(id), ether_.endpoint(id),
-          settings.sim.lidar ? make_scan_mapper(truth.geometry(), team[r]) : nullptr,
+          settings.sim.lidar ? settings.make_mapper(truth.geometry(), team[r]) : nullptr,
           make_coordinator(settings.coordinator, settings.coordination), sink));
     }
   }

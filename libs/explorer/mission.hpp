@@ -25,11 +25,15 @@ struct Fault {
   double factor = 1.0;   ///< of kSlow
 };
 
+/// Makes the scan mapper of a robot in lidar runs.
+using MapperFactory = std::function<std::unique_ptr<ScanMapper>(const GridGeometry&, const RobotSpec&)>;
+
 struct MissionSettings {
   std::string coordinator = "daa";
   CoordinatorSettings coordination;
   ExplorerSettings explorer;
   sim::SimOptions sim;
+  MapperFactory make_mapper;      ///< for sim.lidar, not used otherwise
   double until = 1.0;             ///< stop when this fraction of the reachable area has been seen; 1: go on to the end
   double max_time_s = 0.0;        ///< 0: ten times what one slow robot would need to drive over everything
   std::vector<Fault> faults;      ///< time ascending
@@ -93,9 +97,6 @@ Grid<std::uint8_t> reachable_area(const OccupancyGrid& truth, const std::vector<
 
 /// Called now and then: (simulated time, explored fraction). Returning false interrupts the run cleanly.
 using MissionProgress = std::function<bool(double now_s, double explored_fraction)>;
-/// Makes the scan mapper of a robot in lidar runs.
-using MapperFactory = std::function<std::unique_ptr<ScanMapper>(const GridGeometry&, const RobotSpec&)>;
-
 /// Runs a mission to its end. Deterministic in everything but decision_ms. Throws InputError for impossible starts or
 /// an unknown coordinator. `truth` is free or occupied everywhere (see solid_map).
 MissionResult run_mission(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,

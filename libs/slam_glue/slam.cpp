@@ -112,11 +112,4 @@ SlamResult run_slam(const std::filesystem::path& log, const SlamOptions& options
   return result;
 }
 
-std::vector<SlamMethod> slam_methods() {
-  return {{"graph", "point-to-line scan matching, checked loop closures, pose graph (Ceres)"},
-          {"icp", "scan matching against a growing points map (MRPT CMetricMapBuilderICP)"},
-          {"rbpf", "Rao-Blackwellised particle filter with scan matching (MRPT CMetricMapBuilderRBPF)"},
-          {"odometry", "poses as logged; mapping only"}};
-}
-
 }  // namespace outrider::slam_glue

@@ -1,4 +1,5 @@
 #include "explorer/mission.hpp"
+#include "explorer/scan_mapper.hpp"
 
 #include <gtest/gtest.h>
 
@@ -186,6 +187,7 @@ TEST(Mission, LidarFindsTheSameRoomsAsTheCellSensor) {
   const sim::World world = sim::parse_world(kTwoRooms, "two rooms");
   MissionSettings settings;
   settings.sim.lidar = true;
+  settings.make_mapper = make_scan_mapper;
   const auto team = team_for(world, 2);
   const auto result = run_mission(world.map, team, settings);
   EXPECT_EQ(result.status, MissionStatus::kExplored);

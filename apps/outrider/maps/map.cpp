@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "context.hpp"
+#include "maps_module.hpp"
 #include "slam_glue/map_files.hpp"
+#include "verbs.hpp"
 #include "world/error.hpp"
 #include "world_source.hpp"
 
@@ -61,7 +62,7 @@ void run(const Options& o, Context& ctx) {
 
 void add_map(CLI::App& app, Context& ctx) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("map", "converts maps; --info describes one");
+  CLI::App* verb = app.add_subcommand(kMap.name, kMap.about);
   verb->add_option("IN", o->in, "world name or map file")->required();
   verb->add_option("OUT", o->out, ".yaml (ROS map_server), .gridmap[.gz] (MRPT) or .bt (OctoMap)");
   verb->add_option("--resolution", o->resolution, "edge of a cell for images, .map and .txt [m]")

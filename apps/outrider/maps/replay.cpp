@@ -6,13 +6,14 @@
 #include <chrono>
 #include <cstdio>
 
-#include "context.hpp"
+#include "maps_module.hpp"
 #include "progress.hpp"
 #include "report/metrics.hpp"
 #include "report/run_folder.hpp"
 #include "slam_glue/evaluation.hpp"
 #include "slam_glue/map_files.hpp"
 #include "slam_glue/slam.hpp"
+#include "verbs.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"
 #include "world_source.hpp"
@@ -191,7 +192,7 @@ void replay(Options& o, Context& ctx) {
 
 void add_replay(CLI::App& app, Context& ctx) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("replay", "a log becomes a map, a trajectory and a report");
+  CLI::App* verb = app.add_subcommand(kReplay.name, kReplay.about);
   verb->add_option("LOG", o->logs, "MRPT .rawlog[.gz] or CARMEN .log/.clf[.gz]")->required();
   verb->add_option("--slam", o->slam.method, "see 'outrider list slam'")->capture_default_str()->type_name("METHOD");
   verb->add_option("--resolution", o->slam.resolution, "edge of a cell of the map [m]")
