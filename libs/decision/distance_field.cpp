@@ -6,22 +6,14 @@
 #include <cstddef>
 #include <utility>
 
+#include "decision/dial.hpp"
+
 namespace outrider::decision {
 namespace {
 
-// A level is 0 for a blocked cell (nothing is smaller, so "shorter than known" is the obstacle test too), 1 + distance
-// for a reached cell, and the largest number for any other. One blocked cell all around spares the border test.
-constexpr std::uint32_t kBlocked = 0, kSource = 1;
-template <class D>
-constexpr D kFar = std::numeric_limits<D>::max();
+using namespace dial;
 
-using BucketRing = std::array<std::vector<std::uint32_t>, 8>;
-constexpr std::size_t kRingSize = std::tuple_size_v<BucketRing>;
-
-constexpr std::uint32_t kDiagonal = 7;  // beside an edge of 5
-constexpr std::uint32_t edge_of(Steps steps) { return steps == Steps::kOctile ? 5 : 1; }
-
-constexpr std::array<Cell, 8> kDirections{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+constexpr std::uint32_t kSource = 1;  // the level of a source
 
 template <class D>
 void load_mask(const Grid<std::uint8_t>& mask, std::vector<D>& levels) {
@@ -35,58 +27,6 @@ void load_mask(const Grid<std::uint8_t>& mask, std::vector<D>& levels) {
     for (std::size_t x = 0; x < width; ++x) to[x + 1] = from[x] != 0 ? kFar<D> : D{kBlocked};
   }
   std::fill_n(levels.end() - static_cast<std::ptrdiff_t>(width + 2), width + 2, D{kBlocked});
-}
-
-/// Lowers levels and collects the cells that became nearer.
-template <class D>
-struct Lowering {
-  D* levels;
-  std::uint32_t* end;  ///< of the bucket that collects them
-
-  void by_edge(std::size_t cell, std::uint32_t level) {
-    if (level >= levels[cell]) return;
-    levels[cell] = static_cast<D>(level);
-    *end++ = static_cast<std::uint32_t>(cell);
-  }
-  /// Writes before it knows whether the cell counts: diagonals are hard to predict, and an addition costs less than a
-  /// wrong guess. (Edges are easier to predict: measured, branches win there.)
-  void by_diagonal(std::size_t cell, std::uint32_t level, bool allowed) {
-    const std::uint32_t known = levels[cell];
-    const bool shorter = (level < known) & allowed;
-    levels[cell] = static_cast<D>(shorter ? level : known);
-    *end = static_cast<std::uint32_t>(cell);
-    end += shorter;
-  }
-};
-
-/// Lowers the neighbours of all cells of `now` that still have `level`.
-template <class D, Steps kSteps>
-void expand(std::span<const std::uint32_t> now, std::size_t stride, std::uint32_t level, std::uint32_t edge_level,
-            std::uint32_t diagonal_level, Lowering<D>& edges, Lowering<D>& diagonals) {
-  const D* levels = edges.levels;
-  for (const std::size_t c : now) {
-    // Was a shorter way found since? Not where all steps are equal.
-    if (kSteps == Steps::kOctile && levels[c] != level) continue;
-    const std::size_t up = c + stride, down = c - stride;
-    const bool e = levels[c + 1] != kBlocked, w = levels[c - 1] != kBlocked;
-    const bool n = levels[up] != kBlocked, s = levels[down] != kBlocked;
-    edges.by_edge(down, edge_level);
-    edges.by_edge(c - 1, edge_level);
-    edges.by_edge(c + 1, edge_level);
-    edges.by_edge(up, edge_level);
-    if constexpr (kSteps == Steps::kOctile) {
-      diagonals.by_diagonal(down - 1, diagonal_level, s & w);
-      diagonals.by_diagonal(down + 1, diagonal_level, s & e);
-      diagonals.by_diagonal(up - 1, diagonal_level, n & w);
-      diagonals.by_diagonal(up + 1, diagonal_level, n & e);
-    }
-  }
-}
-
-/// Room for `more` cells at the end of a bucket. One more than can come, as the last write may not count.
-std::uint32_t* make_room(std::vector<std::uint32_t>& bucket, std::size_t size, std::size_t more) {
-  if (bucket.size() < size + more + 1) bucket.resize(2 * (size + more + 1));
-  return bucket.data() + size;
 }
 
 /// Lowers `levels` from the sources, `count` cells in bucket 0, to their distances as far as `limit`. False when D is
@@ -161,32 +101,8 @@ double DistanceField::metres(Cell c) const {
 }
 
 std::vector<Cell> DistanceField::path(Cell from) const {
-  std::vector<Cell> cells;
-  if (!reached(from)) return cells;
-  Cell at = from, heading{0, 0};
-  cells.push_back(at);
-  while (level(at) != kSource) {
-    heading = downhill(at, heading);
-    at = {at.x + heading.x, at.y + heading.y};
-    cells.push_back(at);
-  }
-  return cells;
-}
-
-/// A direction in which a step from `at` is the beginning of a shortest path; `heading` when it is one.
-Cell DistanceField::downhill(Cell at, Cell heading) const {
-  const auto leads_down = [&](Cell d) {
-    const bool is_diagonal = d.x != 0 && d.y != 0;
-    const Cell to{at.x + d.x, at.y + d.y};
-    if (is_diagonal &&
-        (steps_ == Steps::kOrthogonal || level({to.x, at.y}) == kBlocked || level({at.x, to.y}) == kBlocked))
-      return false;
-    return reached(to) && level(to) + (is_diagonal ? kDiagonal : edge_of(steps_)) == level(at);
-  };
-  if (heading != Cell{0, 0} && leads_down(heading)) return heading;
-  const auto found = std::find_if(kDirections.begin(), kDirections.end(), leads_down);
-  assert(found != kDirections.end());
-  return *found;
+  if (!reached(from)) return {};
+  return downhill_path(from, kSource, steps_, [this](Cell c) { return level(c); });
 }
 
 }  // namespace outrider::decision

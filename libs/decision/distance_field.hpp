@@ -39,7 +39,6 @@ class DistanceField {
  private:
   template <class D>
   bool fill(std::vector<D>& levels, const Grid<std::uint8_t>& mask, std::span<const Cell> sources, std::uint32_t limit);
-  Cell downhill(Cell at, Cell heading) const;
   std::uint32_t level(Cell c) const;
   std::size_t padded_index(Cell c) const {
     return static_cast<std::size_t>(c.y + 1) * static_cast<std::size_t>(geometry_.width + 2) +

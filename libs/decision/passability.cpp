@@ -49,8 +49,9 @@ Passability::Passability(const GridGeometry& geometry, double radius_m)
       obstacles_(geometry),
       mask_(geometry) {}
 
-void Passability::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed) {
+std::span<const std::uint32_t> Passability::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed) {
   assert(map.geometry() == mask_.geometry());
+  changed_.clear();
   for (const std::uint32_t index : changed) {
     const CellState before = known_[index], now = map[index];
     if (before == now) continue;
@@ -58,8 +59,16 @@ void Passability::update(const OccupancyGrid& map, std::span<const std::uint32_t
     const Cell c = mask_.geometry().cell_at(index);
     if (before == CellState::kOccupied) remove_obstacle(c);
     if (now == CellState::kOccupied) add_obstacle(c);
-    mask_[index] = now == CellState::kFree && obstacles_[index] == 0;
+    set(index, now == CellState::kFree && obstacles_[index] == 0);
   }
+  return changed_;
+}
+
+void Passability::set(std::size_t index, bool passable) {
+  const auto value = static_cast<std::uint8_t>(passable);
+  if (mask_[index] == value) return;
+  mask_[index] = value;
+  changed_.push_back(static_cast<std::uint32_t>(index));
 }
 
 /// Calls operation(begin, end) with the index range of every row piece that an obstacle at `c` forbids.
@@ -78,7 +87,7 @@ void Passability::add_obstacle(Cell c) {
   for_rows_around(c, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       ++obstacles_[i];
-      mask_[i] = 0;
+      set(i, false);
     }
   });
 }
@@ -87,7 +96,7 @@ void Passability::remove_obstacle(Cell c) {
   for_rows_around(c, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       --obstacles_[i];
-      mask_[i] = obstacles_[i] == 0 && known_[i] == CellState::kFree;
+      set(i, obstacles_[i] == 0 && known_[i] == CellState::kFree);
     }
   });
 }

@@ -23,8 +23,9 @@ class Passability {
   /// Everything is unknown. Throws InputError when the radius [m] is negative, not finite or above 128 cells.
   Passability(const GridGeometry& geometry, double radius_m);
 
-  /// Follows `map` after the cells `changed` (indices, duplicates allowed) changed. O(changed x mask size).
-  void update(const OccupancyGrid& map, std::span<const std::uint32_t> changed);
+  /// Follows `map` after the cells `changed` (indices, duplicates allowed) changed. O(changed x mask size). Returns the
+  /// cells whose passability changed, maybe more than once; valid until the next call.
+  std::span<const std::uint32_t> update(const OccupancyGrid& map, std::span<const std::uint32_t> changed);
 
   bool passable(Cell c) const { return mask_.contains(c) && mask_[c] != 0; }
   const Grid<std::uint8_t>& mask() const { return mask_; }  ///< 1 = passable
@@ -35,12 +36,14 @@ class Passability {
   void remove_obstacle(Cell c);
   template <class RowOperation>
   void for_rows_around(Cell c, RowOperation&& operation);
+  void set(std::size_t index, bool passable);
 
   double radius_;
   std::vector<int> half_widths_;
   Grid<CellState> known_;          // the map as of the last update
   Grid<std::uint16_t> obstacles_;  // how many occupied cells forbid a cell
   Grid<std::uint8_t> mask_;
+  std::vector<std::uint32_t> changed_;  // what the last update changed in the mask
 };
 
 /// The mask of a whole map at once, for true maps: O(cells + runs of occupied cells x mask area).

@@ -14,8 +14,8 @@ constexpr double kRetry = 1.0;         // [s] between rounds opened by a robot t
 
 class AuctionCoordinator : public Coordinator {
  public:
-  AuctionCoordinator(const TaskGrain& grain, Allocate allocate, auction::Rebid rebid)
-      : grain_(grain), allocate_(std::move(allocate)), rebid_(rebid) {}
+  AuctionCoordinator(BidFor bid_for, Allocate allocate, auction::Rebid rebid)
+      : bid_for_(std::move(bid_for)), allocate_(std::move(allocate)), rebid_(rebid) {}
 
   Decision decide(const Situation& s) override {
     Decision decision;
@@ -42,7 +42,7 @@ class AuctionCoordinator : public Coordinator {
 
   BidSheet own_sheet(const Situation& s, RoundId round) const {
     return {round, s.self, s.pose, s.spec.speed, s.spec.range, s.explored_rate,
-            s.task.has_value() && !s.needs_task, s.task ? std::optional(s.task->cell) : std::nullopt, s.tasks(grain_)};
+            s.task.has_value() && !s.needs_task, s.task ? std::optional(s.task->cell) : std::nullopt, s.tasks(bid_for_(s))};
   }
 
   void open_round(const Situation& s, Decision& decision) {
@@ -111,7 +111,7 @@ class AuctionCoordinator : public Coordinator {
     decision.value = mine->value;
   }
 
-  TaskGrain grain_;
+  BidFor bid_for_;
   Allocate allocate_;
   auction::Rebid rebid_;
   std::uint32_t count_ = 0;
@@ -122,8 +122,8 @@ class AuctionCoordinator : public Coordinator {
 
 }  // namespace
 
-std::unique_ptr<Coordinator> make_auction_coordinator(const TaskGrain& grain, Allocate allocate, auction::Rebid rebid) {
-  return std::make_unique<AuctionCoordinator>(grain, std::move(allocate), rebid);
+std::unique_ptr<Coordinator> make_auction_coordinator(BidFor bid_for, Allocate allocate, auction::Rebid rebid) {
+  return std::make_unique<AuctionCoordinator>(std::move(bid_for), std::move(allocate), rebid);
 }
 
 }  // namespace outrider::explorer

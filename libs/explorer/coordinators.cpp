@@ -13,6 +13,8 @@
 namespace outrider::explorer {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
 /// Yamauchi 1998: each robot drives to its nearest frontier. With reservation, tasks within the sensing range of a
 /// team-mate's goal are that team-mate's.
 class NearestCoordinator : public Coordinator {
@@ -21,7 +23,11 @@ class NearestCoordinator : public Coordinator {
 
   Decision decide(const Situation& s) override {
     if (!s.needs_task) return {};
-    const std::vector<BidEntry> entries = s.tasks({});
+    const auto bid = [&](const BidEntry& e) {
+      return reserve_ && reserved(s, e.task) ? -kNoLimit : -static_cast<double>(e.distance);
+    };
+    const auto most = [](const BidEntry& e) { return -static_cast<double>(e.distance); };
+    const std::vector<BidEntry> entries = s.tasks({.gains = false, .least_bid = bid, .most_bid = most});
     if (entries.empty()) return {.verdict = Decision::Verdict::kNothing};
     const BidEntry* nearest = nullptr;
     for (const BidEntry& e : entries)
@@ -43,6 +49,39 @@ class NearestCoordinator : public Coordinator {
   bool reserve_;
 };
 
+/// What a robot can lose to team-mates: each takes at most one task.
+std::size_t rivals(const Situation& s) { return s.known.size(); }
+
+/// Dai's rules: the influence of team-mates (eq. 2) takes at most max(gamma, 1) each from U.
+TaskGrain dai_grain(auction::BidRule rule, const auction::BidParameters& k, const Situation& s) {
+  const auto bid = [rule, k, v = s.spec.speed, a = s.explored_rate](const BidEntry& e, double u_p2) {
+    return rule({e.gain, u_p2, e.distance, v, a}, k);
+  };
+  const bool whole = k.gain == auction::Gain::kFootprint;
+  if (k.way == auction::Way::kStraight) return {.whole_footprint = whole};  // no search outwards meets these in order
+  const double least_u_p2 = -static_cast<double>(rivals(s)) * std::max(k.gamma, 1.0);
+  return {.whole_footprint = whole,
+          .least_bid = [=](const BidEntry& e) { return bid(e, least_u_p2); },
+          .most_bid = [=](const BidEntry& e) { return bid(e, 0.0); },
+          .keep = rivals(s) + 1};
+}
+
+/// Burgard's: every awarded task takes at most 1 from the utility, which is 1 at most.
+TaskGrain burgard_grain(double beta, const Situation& s) {
+  const auto bid = [beta, range = s.spec.range](const BidEntry& e, double u) { return u - beta * e.distance / range; };
+  const double least_u = 1.0 - static_cast<double>(rivals(s));
+  return {.gains = false,
+          .least_bid = [=](const BidEntry& e) { return bid(e, least_u); },
+          .most_bid = [=](const BidEntry& e) { return bid(e, 1.0); },
+          .keep = rivals(s) + 1};
+}
+
+/// An assignment of n robots needs of each only its n nearest tasks: one of them is always left.
+TaskGrain nearest_grain(double spacing, const Situation& s) {
+  const auto bid = [](const BidEntry& e) { return -static_cast<double>(e.distance); };
+  return {.spacing = spacing, .gains = false, .least_bid = bid, .most_bid = bid, .keep = rivals(s) + 1};
+}
+
 using Make = std::unique_ptr<Coordinator> (*)(std::string_view, const CoordinatorSettings&);
 
 std::unique_ptr<Coordinator> make_nearest(std::string_view name, const CoordinatorSettings&) {
@@ -52,31 +91,34 @@ std::unique_ptr<Coordinator> make_nearest(std::string_view name, const Coordinat
 /// Dai's rules differ in one function.
 std::unique_ptr<Coordinator> make_dai(std::string_view name, const CoordinatorSettings& settings) {
   const auction::BidRule rule = *auction::bid_rule(name);
-  const TaskGrain grain{.whole_footprint = settings.bids.gain == auction::Gain::kFootprint};
+  const auto bid_for = [=](const Situation& s) { return dai_grain(rule, settings.bids, s); };
   const auto allocate = [=](const auction::BidTable& table, const auction::Clear& clear) {
     return auction::sequential_auction(table, rule, settings.bids, clear);
   };
-  return make_auction_coordinator(grain, allocate, settings.bids.rebid);
+  return make_auction_coordinator(bid_for, allocate, settings.bids.rebid);
 }
 
 std::unique_ptr<Coordinator> make_ssi(std::string_view, const CoordinatorSettings& settings) {
-  return make_auction_coordinator({.spacing = settings.cluster_spacing},
-                                  [](const auction::BidTable& table, const auction::Clear&) {
-                                    return auction::first_of_each(auction::all_tasks_auction(table));
-                                  });
+  const auto bid_for = [spacing = settings.cluster_spacing](const Situation&) {
+    return TaskGrain{.spacing = spacing, .gains = false};
+  };
+  return make_auction_coordinator(bid_for, [](const auction::BidTable& table, const auction::Clear&) {
+    return auction::first_of_each(auction::all_tasks_auction(table));
+  });
 }
 
 std::unique_ptr<Coordinator> make_burgard(std::string_view, const CoordinatorSettings& settings) {
-  return make_auction_coordinator({}, [=](const auction::BidTable& table, const auction::Clear& clear) {
+  const auto bid_for = [beta = settings.beta](const Situation& s) { return burgard_grain(beta, s); };
+  return make_auction_coordinator(bid_for, [=](const auction::BidTable& table, const auction::Clear& clear) {
     return auction::burgard_assignment(table, settings.beta, clear);
   });
 }
 
 std::unique_ptr<Coordinator> make_hungarian(std::string_view, const CoordinatorSettings& settings) {
-  return make_auction_coordinator({.spacing = settings.cluster_spacing},
-                                  [](const auction::BidTable& table, const auction::Clear&) {
-                                    return auction::hungarian_assignment(table);
-                                  });
+  const auto bid_for = [spacing = settings.cluster_spacing](const Situation& s) { return nearest_grain(spacing, s); };
+  return make_auction_coordinator(bid_for, [](const auction::BidTable& table, const auction::Clear&) {
+    return auction::hungarian_assignment(table);
+  });
 }
 
 struct Row {

@@ -40,13 +40,19 @@ void Explorer::sense(double now_s) {
   note_trail();
   sightings_ = sensing.sightings;
   take_in(sensing);
-  changed_ = map_.take_changed();
-  if (!changed_.empty()) {
-    passable_.update(map_.states(), changed_);
-    board_.note_changes(changed_);
-    map_news_s_ = now_s;
-  }
+  changed_.clear();
+  note_news(now_s);
   share();
+}
+
+/// Whatever keeps track of the map hears what changed in it.
+void Explorer::note_news(double now_s) {
+  const std::vector<std::uint32_t> news = map_.take_changed();
+  if (news.empty()) return;
+  const auto mask_news = passable_.update(map_.states(), news);
+  board_.note_changes(map_.states(), news, passable_, mask_news);
+  changed_.insert(changed_.end(), news.begin(), news.end());
+  map_news_s_ = now_s;
 }
 
 void Explorer::take_in(const Sensing& sensing) {
@@ -96,12 +102,7 @@ void Explorer::send_status(double now_s) {
 bool Explorer::listen(double now_s) {
   const auto mail = bus_.receive();
   for (const auto& delivery : mail) hear(delivery, now_s);
-  if (auto news = map_.take_changed(); !news.empty()) {
-    passable_.update(map_.states(), news);
-    board_.note_changes(news);
-    changed_.insert(changed_.end(), news.begin(), news.end());
-    map_news_s_ = now_s;
-  }
+  note_news(now_s);
   if (!inbox_.empty()) run_coordinator(now_s);
   return !mail.empty();
 }
@@ -140,19 +141,20 @@ void Explorer::act(double now_s) {
 
 void Explorer::check_task(double now_s) {
   if (!task_) return;
-  if (!changed_.empty() && !frontier_near(task_->cell))
+  // It lives while its block of frontier does: robots sense on the way, and the very cell is soon behind the front.
+  if (!changed_.empty() && !board_.frontier_near(task_->cell, settings_.grain.spacing))
     return end_task(arrived_ ? "reached" : "seen from afar", now_s);
   if (!changed_.empty() && !way_is_passable() && !making_room_for_ && !plan(task_->stand))
     return end_task("no way", now_s);
   if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
-    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing, map_.states());
+    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing);
     stop();
     return end_task("out of time", now_s);
   }
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
-    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing, map_.states());
+    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing);
     end_task("not observable", now_s);
   }
 }
@@ -161,16 +163,6 @@ void Explorer::check_task(double now_s) {
 double Explorer::patience() const {
   const double metres = static_cast<double>(way_.size()) * map_.states().geometry().resolution;
   return 60.0 + 5.0 * metres / spec_.speed;
-}
-
-/// A task lives while its block of frontier does: robots sense on the way, and the very cell is soon behind the front.
-bool Explorer::frontier_near(Cell task) const {
-  const auto& map = map_.states();
-  const int reach = static_cast<int>(settings_.grain.spacing / 2.0 / map.geometry().resolution);
-  for (int y = task.y - reach; y <= task.y + reach; ++y)
-    for (int x = task.x - reach; x <= task.x + reach; ++x)
-      if (map.contains({x, y}) && decision::is_frontier(map, {x, y})) return true;
-  return false;
 }
 
 void Explorer::end_task(const char* how, double now_s) {

@@ -85,7 +85,7 @@ class Explorer {
   const Pose2& pose() const { return pose_; }
   std::optional<Task> task() const { return task_; }
   /// Frontiers of `map` (the team's) that are left, as this robot sees them.
-  std::vector<Left> left(const OccupancyGrid& map) { return board_.left(map); }
+  std::vector<Left> left(const OccupancyGrid& map) const { return board_.left(map); }
   double explored_rate() const { return rate_.value(); }
   /// A revived robot forgets where it was going, not what it knows.
   void restart(double now_s);
@@ -94,6 +94,7 @@ class Explorer {
   enum class Phase { kExploring, kReturning, kDone };
 
   void take_in(const Sensing& sensing);
+  void note_news(double now_s);
   void share();
   void send_status(double now_s);
   void hear(const link::Delivery& delivery, double now_s);
@@ -101,7 +102,6 @@ class Explorer {
   void apply(const Decision& decision, double now_s);
   void check_task(double now_s);
   double patience() const;
-  bool frontier_near(Cell task) const;
   void end_task(const char* how, double now_s);
   void nothing_left(double now_s);
   void go_home(double now_s);

@@ -18,7 +18,7 @@ double distance_to_square(Point p, Point center, double half) {
 }  // namespace
 
 bool Explorer::plan(Cell stand) {
-  std::vector<Cell> way = board_.path_to(passable_.mask(), base(), stand);
+  std::vector<Cell> way = board_.path_to(base(), stand);
   if (way.empty()) return false;
   drive(std::move(way));
   return true;

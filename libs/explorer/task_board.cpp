@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
+#include "decision/frontiers.hpp"
 #include "world/ray.hpp"
 
 namespace outrider::explorer {
@@ -32,131 +34,146 @@ std::string to_string(LeftReason reason) {
   return "";
 }
 
+/// The entries of a list, and which bid is good enough for it.
+class TaskBoard::Shortlist {
+ public:
+  explicit Shortlist(const TaskGrain& grain) : grain_(grain) {}
+
+  bool bounded() const { return static_cast<bool>(grain_.most_bid); }
+  double most_bid(const BidEntry& entry) const { return bounded() ? grain_.most_bid(entry) : 0.0; }
+  /// May a bid of at most `most_bid` be among the best?
+  bool matters(double most_bid) const {
+    return !bounded() || least_bids_.size() < grain_.keep || most_bid >= least_bids_.front();
+  }
+  bool full() const { return entries_.size() >= grain_.most; }
+
+  void add(const BidEntry& entry) {
+    entries_.push_back(entry);
+    if (!bounded()) return;
+    least_bids_.push_back(grain_.least_bid(entry));
+    std::push_heap(least_bids_.begin(), least_bids_.end(), std::greater<>());
+    if (least_bids_.size() <= grain_.keep) return;
+    std::pop_heap(least_bids_.begin(), least_bids_.end(), std::greater<>());
+    least_bids_.pop_back();
+  }
+
+  std::vector<BidEntry> take() {
+    std::erase_if(entries_, [&](const BidEntry& e) { return !matters(most_bid(e)); });
+    const auto row_major = [](const BidEntry& a, const BidEntry& b) {
+      return std::tie(a.task.y, a.task.x) < std::tie(b.task.y, b.task.x);
+    };
+    std::sort(entries_.begin(), entries_.end(), row_major);
+    if (entries_.size() > grain_.most) {
+      std::stable_sort(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
+      entries_.resize(grain_.most);
+      std::sort(entries_.begin(), entries_.end(), row_major);
+    }
+    return std::move(entries_);
+  }
+
+ private:
+  const TaskGrain& grain_;
+  std::vector<BidEntry> entries_;
+  std::vector<double> least_bids_;  // the `keep` best of the entries, a heap with the least in front
+};
+
 TaskBoard::TaskBoard(const RobotSpec& spec, const GridGeometry& geometry)
-    : spec_(spec), geometry_(geometry), footprint_(spec.range, geometry.resolution) {
-  const double edge = spec.range + geometry.resolution;
-  const auto blocks = [&](int cells) { return static_cast<int>(cells * geometry.resolution / edge) + 1; };
-  revisions_ = Grid<std::uint64_t>({edge, geometry.origin, blocks(geometry.width), blocks(geometry.height)});
+    : spec_(spec), geometry_(geometry), tasks_(spec, geometry), field_(geometry) {
   const double stand_off = std::min(spec.range, spec.radius + 2.0 * geometry.resolution);
   near_ = offsets_within(static_cast<int>(stand_off / geometry.resolution));
 }
 
-bool TaskBoard::too_small(const decision::FrontierCluster& cluster) const {
-  return static_cast<double>(cluster.size()) * geometry_.resolution < spec_.radius;
+void TaskBoard::note_changes(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
+                             const decision::Passability& passable, std::span<const std::uint32_t> mask_changed) {
+  tasks_.update(map, changed, mask_changed);
+  if (mask_changed.empty()) return;
+  field_.update(passable.mask(), mask_changed);
+  search_at_.reset();
 }
 
-std::optional<Cell> TaskBoard::stand_for(const OccupancyGrid& map, Cell task) const {
+void TaskBoard::search_from(Cell at) {
+  if (search_at_ == at) return;
+  field_.begin(at);
+  search_at_ = at;
+}
+
+/// The nearest good cell around a task from which it can be seen.
+template <class Good>
+std::optional<Cell> TaskBoard::stand_for(const OccupancyGrid& map, Cell task, Good&& good) const {
   for (const Cell offset : near_) {
     const Cell c{task.x + offset.x, task.y + offset.y};
-    if (geometry_.contains(c) && field_.reached(c) && line_of_sight(map, c, task)) return c;
+    if (geometry_.contains(c) && good(c) && line_of_sight(map, c, task)) return c;
   }
   return std::nullopt;
 }
 
-std::vector<Cell> TaskBoard::representatives(const decision::Passability& passable,
-                                             const decision::Frontiers& frontiers, double spacing) const {
-  const int block = std::max(1, static_cast<int>(spacing / geometry_.resolution));
-  std::vector<Cell> tasks;
-  struct Candidate {
-    int by, bx;
-    bool blocked;
-    Cell cell;
-  };
-  std::vector<Candidate> members;
-  for (const auto& cluster : frontiers.clusters) {
-    if (too_small(cluster)) continue;
-    members.clear();
-    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
-      const Cell c = geometry_.cell_at(frontiers.cells[k]);
-      if (given_up(c)) continue;
-      if (block == 1) tasks.push_back(c);
-      else members.push_back({c.y / block, c.x / block, !passable.passable(c), c});
+/// The tasks whose stands are farther than `beyond` [m] and not farther than `reach`. A task's stand is the nearest cell
+/// where the robot fits. At the end of the search, those that cannot be reached there get another one.
+std::vector<TaskBoard::Offer> TaskBoard::offers(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
+                                                double beyond, double reach, bool gains) {
+  std::vector<Offer> offers;
+  const double stand_off = near_.empty() ? 0.0 : spec_.radius + 3.0 * geometry_.resolution;
+  tasks_.for_near(passable, at, 1.02 * reach + stand_off, [&](FrontierTask& task) {  // octile lengths are 1 % short
+    auto stand = stand_for(map, task.cell, [&](Cell c) { return passable.passable(c); });
+    double distance = stand ? field_.metres(*stand) : decision::ReachField::kNoLimit;
+    if (distance <= beyond || (distance > reach && !field_.exhausted())) return;
+    if (distance == decision::ReachField::kNoLimit) {
+      stand = stand_for(map, task.cell, [&](Cell c) { return field_.reached(c); });
+      if (!stand) return;
+      distance = field_.metres(*stand);
     }
-    // One task a block: its first cell that a robot can stand on, else its first cell.
-    std::stable_sort(members.begin(), members.end(), [](const Candidate& a, const Candidate& b) {
-      return std::tie(a.by, a.bx, a.blocked) < std::tie(b.by, b.bx, b.blocked);
-    });
-    for (std::size_t k = 0; k < members.size(); ++k)
-      if (k == 0 || members[k].by != members[k - 1].by || members[k].bx != members[k - 1].bx)
-        tasks.push_back(members[k].cell);
-  }
-  return tasks;
+    const double gain = gains ? tasks_.most_gain(task, *stand) : 0.0;
+    offers.push_back({&task, {task.cell, *stand, static_cast<float>(gain), static_cast<float>(distance)}, 0.0});
+  });
+  return offers;
 }
 
 std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
                                          const TaskGrain& grain) {
-  const auto& frontiers = extractor_.extract(map);
-  const Cell source[] = {at};
-  field_.compute(passable.mask(), source);
-  field_at_ = at;
-  double spacing = grain.spacing;
-  std::vector<Cell> tasks = representatives(passable, frontiers, spacing);
-  while (tasks.size() > grain.most) {
-    spacing = std::max(2.0 * geometry_.resolution, 2.0 * spacing);
-    tasks = representatives(passable, frontiers, spacing);
+  constexpr double kFarther = 1.6;  // each ring of the search reaches so many times as far as the last
+  tasks_.set_spacing(grain.spacing);
+  search_from(at);
+  Shortlist list(grain);
+  double beyond = -1.0;
+  for (double reach = spec_.range + geometry_.resolution;; reach *= kFarther) {
+    field_.extend(reach);
+    if (field_.exhausted()) reach = decision::ReachField::kNoLimit;
+    std::vector<Offer> ring = offers(map, passable, at, beyond, reach, grain.gains);
+    for (Offer& offer : ring) offer.most_bid = list.most_bid(offer.entry);
+    std::stable_sort(ring.begin(), ring.end(), [](const Offer& a, const Offer& b) { return a.most_bid > b.most_bid; });
+    for (Offer& offer : ring) {
+      if (!list.matters(offer.most_bid)) break;
+      if (grain.gains) offer.entry.gain = static_cast<float>(tasks_.gain(map, *offer.task, offer.entry.stand, grain.whole_footprint));
+      list.add(offer.entry);
+    }
+    if (field_.exhausted() || list.full()) break;
+    const auto best_gain = static_cast<float>(grain.gains ? tasks_.most_gain() : 0.0);
+    if (list.bounded() && !list.matters(list.most_bid({{}, {}, best_gain, static_cast<float>(reach)}))) break;
+    beyond = reach;
   }
-  std::vector<BidEntry> entries;
-  for (const Cell task : tasks) {
-    const auto stand = stand_for(map, task);
-    if (!stand) continue;
-    entries.push_back({task, *stand, grain.gains ? static_cast<float>(gain_at(map, *stand, grain.whole_footprint)) : 0.0F,
-                       static_cast<float>(field_.metres(*stand))});
-  }
-  std::sort(entries.begin(), entries.end(), [](const BidEntry& a, const BidEntry& b) {
-    return std::tie(a.task.y, a.task.x) < std::tie(b.task.y, b.task.x);
-  });
-  return entries;
+  return list.take();
 }
 
-void TaskBoard::give_up(Cell task, Cell stand, double spacing, const OccupancyGrid& map) {
-  const int reach = static_cast<int>(spacing / 2.0 / geometry_.resolution);
-  for (int y = task.y - reach; y <= task.y + reach; ++y)
-    for (int x = task.x - reach; x <= task.x + reach; ++x)
-      if (map.contains({x, y}) && decision::is_frontier(map, {x, y})) given_up_[{y, x}] |= stand == task;
-}
-
-void TaskBoard::note_changes(std::span<const std::uint32_t> changed) {
-  ++revision_;
-  for (const std::uint32_t i : changed)
-    revisions_[revisions_.geometry().cell_of(geometry_.center(geometry_.cell_at(i)))] = revision_;
-}
-
-/// The footprint reaches one block far at most: the gain still holds when none of the nine blocks around has changed.
-double TaskBoard::gain_at(const OccupancyGrid& map, Cell stand, bool whole) {
-  const Cell block = revisions_.geometry().cell_of(geometry_.center(stand));
-  std::uint64_t newest = 0;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx)
-      if (const Cell b{block.x + dx, block.y + dy}; revisions_.contains(b)) newest = std::max(newest, revisions_[b]);
-  auto [entry, fresh] = gains_.try_emplace(geometry_.index(stand));
-  if (fresh || entry->second.revision < newest) 
-    entry->second = {revision_, whole ? footprint_.area(map, stand) : footprint_.unseen_area(map, stand)};
-  return entry->second.area;
-}
-
-std::vector<Cell> TaskBoard::path_to(const Grid<std::uint8_t>& passable, Cell at, Cell stand) {
-  std::vector<Cell> path;
-  if (field_at_ == at && field_.reached(stand)) path = field_.path(stand);
-  const auto blocked = [&](Cell c) { return !passable[c]; };
-  if (path.empty() || std::any_of(path.begin(), path.end() - 1, blocked)) {
-    const Cell source[] = {at};
-    field_.compute(passable, source);
-    field_at_ = at;
-    path = field_.path(stand);
-  }
+std::vector<Cell> TaskBoard::path_to(Cell at, Cell stand) {
+  search_from(at);
+  for (double reach = distance(geometry_.center(at), geometry_.center(stand));
+       !field_.reached(stand) && !field_.exhausted(); reach += reach)
+    field_.extend(reach);
+  std::vector<Cell> path = field_.path(stand);
   std::reverse(path.begin(), path.end());
   return path;
 }
 
-std::vector<Left> TaskBoard::left(const OccupancyGrid& map) {
-  const auto& frontiers = extractor_.extract(map);
+std::vector<Left> TaskBoard::left(const OccupancyGrid& map) const {
+  decision::FrontierExtractor extractor;
+  const auto& frontiers = extractor.extract(map);
   std::vector<Left> result;
   for (const auto& cluster : frontiers.clusters) {
     std::set<std::uint32_t> unknown;
     bool tried = false;
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
       const Cell c = geometry_.cell_at(frontiers.cells[k]);
-      if (const auto at = given_up_.find({c.y, c.x}); at != given_up_.end()) tried = tried || at->second;
+      tried = tried || tasks_.tried_in_vain(frontiers.cells[k]);
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
           const Cell n{c.x + dx, c.y + dy};
@@ -164,8 +181,9 @@ std::vector<Left> TaskBoard::left(const OccupancyGrid& map) {
             unknown.insert(static_cast<std::uint32_t>(geometry_.index(n)));
         }
     }
+    const bool too_small = static_cast<double>(cluster.size()) * geometry_.resolution < spec_.radius;
     const LeftReason why = tried ? LeftReason::kNotObservable
-                           : too_small(cluster) ? LeftReason::kTooSmall : LeftReason::kUnreachable;
+                           : too_small ? LeftReason::kTooSmall : LeftReason::kUnreachable;
     result.push_back({cluster.centroid, static_cast<double>(unknown.size()) * geometry_.cell_area(), why});
   }
   return result;

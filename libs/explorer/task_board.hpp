@@ -1,27 +1,29 @@
 #pragma once
 
+#include <functional>
 #include <optional>
-#include <map>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
-#include "decision/distance_field.hpp"
-#include "decision/footprint.hpp"
-#include "decision/frontiers.hpp"
 #include "decision/passability.hpp"
+#include "decision/reach_field.hpp"
+#include "explorer/frontier_tasks.hpp"
 #include "world/messages.hpp"
 #include "world/robot.hpp"
 
 namespace outrider::explorer {
 
-/// How fine the tasks of a frontier are.
+/// Which tasks a coordinator wants to hear of.
 struct TaskGrain {
-  double spacing = 1.0;      ///< one task a block of this edge and cluster [m]; the paper's cells are 1 m
-  std::size_t most = 256;    ///< more tasks than this double the spacing until they fit
+  double spacing = 1.0;      ///< one task a block of this edge and piece of frontier [m]; the paper's cells are 1 m
+  std::size_t most = 256;    ///< the nearest so many
   bool gains = true;         ///< compute BidEntry::gain, else it is 0
   bool whole_footprint = false;  ///< gains count known cells too; the same for all calls on one board
+  /// When set: tasks that cannot be among the `keep` best of the list need not be on it, and nobody searches for them. A
+  /// task's bid lies between `least_bid` and `most_bid`; both never rise with the distance nor fall with the gain.
+  std::function<double(const BidEntry&)> least_bid, most_bid;
+  std::size_t keep = 1;
 };
 
 /// Why a frontier stays unexplored.
@@ -34,48 +36,48 @@ struct Left {
   LeftReason why = LeftReason::kUnreachable;
 };
 
-/// One robot's list of things to explore: frontier clusters of its map as tasks with gain and distance.
+/// One robot's list of things to explore: the pieces of its frontier as tasks with gain and distance, searched outwards
+/// from where it is.
 class TaskBoard {
  public:
   TaskBoard(const RobotSpec& spec, const GridGeometry& geometry);
 
-  /// All tasks that this robot can serve from cell `at`, by task position (row, then column).
+  /// The map changed in the cells `changed`, the mask of passable cells in `mask_changed`. O(changed).
+  void note_changes(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
+                    const decision::Passability& passable, std::span<const std::uint32_t> mask_changed);
+  /// The tasks that this robot can serve from cell `at` and that `grain` asks for, by task position (row, then column).
+  /// O(cells nearer than the farthest task that may matter).
   std::vector<BidEntry> entries(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
                                 const TaskGrain& grain);
-  /// The map changed there: gains of tasks within sight of it are computed anew.
-  void note_changes(std::span<const std::uint32_t> changed);
-  /// The shortest safe path from `at` to `stand`, both included; empty when there is none. Reuses the distances of the
-  /// last entries() when they still hold.
-  std::vector<Cell> path_to(const Grid<std::uint8_t>& passable, Cell at, Cell stand);
+  /// The shortest safe path from `at` to `stand`, both included; empty when there is none.
+  std::vector<Cell> path_to(Cell at, Cell stand);
+  /// Some frontier is left within a block's reach of `task`.
+  bool frontier_near(Cell task, double spacing) const { return tasks_.frontier_near(task, spacing); }
   /// The task was served and is still a frontier: never try it again from here.
-  void give_up(Cell task, Cell stand, double spacing, const OccupancyGrid& map);
-  bool given_up(Cell task) const { return given_up_.contains({task.y, task.x}); }
-  /// Frontier clusters of `map` with the reason why this robot would leave each.
-  std::vector<Left> left(const OccupancyGrid& map);
+  void give_up(Cell task, Cell stand, double spacing) { tasks_.give_up(task, stand == task, spacing); }
+  /// Frontier clusters of `map` with the reason why this robot would leave each. O(cells).
+  std::vector<Left> left(const OccupancyGrid& map) const;
 
  private:
-  bool too_small(const decision::FrontierCluster& cluster) const;
-  std::vector<Cell> representatives(const decision::Passability& passable,
-                                    const decision::Frontiers& frontiers, double spacing) const;
-  std::optional<Cell> stand_for(const OccupancyGrid& map, Cell task) const;
+  struct Offer {
+    FrontierTask* task;
+    BidEntry entry;   // with the gain that it has at most
+    double most_bid;
+  };
+  class Shortlist;
+
+  void search_from(Cell at);
+  std::vector<Offer> offers(const OccupancyGrid& map, const decision::Passability& passable, Cell at, double beyond,
+                            double reach, bool gains);
+  template <class Good>
+  std::optional<Cell> stand_for(const OccupancyGrid& map, Cell task, Good&& good) const;
 
   RobotSpec spec_;
   GridGeometry geometry_;
-  decision::FrontierExtractor extractor_;
-  decision::DistanceField field_;         // from field_at_
-  Cell field_at_{-1, -1};
-  decision::Footprint footprint_;
-  double gain_at(const OccupancyGrid& map, Cell stand, bool whole);
-
-  struct Gain {
-    std::uint64_t revision;  // of the map around, when computed
-    double area;             // [m^2]
-  };
-  std::unordered_map<std::uint64_t, Gain> gains_;  // by cell index; looked up, never iterated
-  Grid<std::uint64_t> revisions_;                  // of each block of the map; a block is a sensing range wide
-  std::uint64_t revision_ = 0;
+  FrontierTasks tasks_;
+  decision::ReachField field_;            // from search_at_, while that is set
+  std::optional<Cell> search_at_;
   std::vector<Cell> near_;                // offsets around a task where a robot may stand, nearest first
-  std::map<std::pair<int, int>, bool> given_up_;  // (row, column) -> the robot stood right there
 };
 
 }  // namespace outrider::explorer

@@ -1,0 +1,146 @@
+#include "explorer/frontier_tasks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace outrider::explorer {
+namespace {
+
+constexpr int kTile = 16;  // about the edge of a tile [cells]
+
+bool row_major(Cell a, Cell b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); }
+
+/// A grid of blocks of `edge` cells that covers a grid.
+GridGeometry blocks_of(const GridGeometry& g, int edge) {
+  return {.resolution = g.resolution * edge, .origin = g.origin, .width = (g.width + edge - 1) / edge,
+          .height = (g.height + edge - 1) / edge};
+}
+
+}  // namespace
+
+FrontierTasks::FrontierTasks(const RobotSpec& spec, const GridGeometry& geometry)
+    : geometry_(geometry),
+      least_(static_cast<std::size_t>(std::max(1.0, std::ceil(spec.radius / geometry.resolution - 1e-9)))),
+      frontiers_(geometry),
+      footprint_(spec.range, geometry.resolution),
+      most_gain_(kPi * spec.range * spec.range * (1.0 + 1e-6)),
+      revision_edge_(static_cast<int>(std::min(spec.range / geometry.resolution, 1e6)) + 1),
+      revisions_(blocks_of(geometry, revision_edge_)) {}
+
+void FrontierTasks::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
+                           std::span<const std::uint32_t> mask_changed) {
+  ++revision_;
+  for (const std::uint32_t i : changed) {
+    const Cell c = geometry_.cell_at(i);
+    revisions_[Cell{c.x / revision_edge_, c.y / revision_edge_}] = revision_;
+  }
+  const auto flipped = frontiers_.update(map, changed);
+  if (block_ == 0) return;
+  for (const std::uint32_t i : flipped) tile_of(i).dirty = true;
+  if (block_ > 1)  // a block's task may move to a cell that can be stood on
+    for (const std::uint32_t i : mask_changed) tile_of(i).dirty = true;
+}
+
+FrontierTasks::Tile& FrontierTasks::tile_of(std::size_t index) {
+  const Cell c = geometry_.cell_at(index);
+  return tiles_[Cell{c.x / edge_, c.y / edge_}];
+}
+
+void FrontierTasks::set_spacing(double spacing) {
+  const int block = std::max(1, static_cast<int>(spacing / geometry_.resolution));
+  if (block == block_) return;
+  block_ = block;
+  edge_ = block * std::max(1, kTile / block);
+  tiles_ = Grid<Tile>(blocks_of(geometry_, edge_));
+  for (std::size_t i = 0; i < geometry_.size(); ++i)
+    if (frontiers_.is_frontier(i)) tile_of(i).dirty = true;
+}
+
+std::pair<Cell, Cell> FrontierTasks::tiles_around(Cell at, double reach) const {
+  const int most = std::max(geometry_.width, geometry_.height);
+  const int cells = static_cast<int>(std::min(std::ceil(reach / geometry_.resolution) + 1.0, static_cast<double>(most)));
+  return {{std::max(at.x - cells, 0) / edge_, std::max(at.y - cells, 0) / edge_},
+          {std::min(at.x + cells, geometry_.width - 1) / edge_, std::min(at.y + cells, geometry_.height - 1) / edge_}};
+}
+
+/// Finds the tile's tasks; those that were there before keep what is known of them.
+void FrontierTasks::cut(Tile& tile, Cell at, const decision::Passability& passable) {
+  std::vector<FrontierTask> tasks;
+  for (int y = at.y * edge_; y < std::min((at.y + 1) * edge_, geometry_.height); y += block_)
+    for (int x = at.x * edge_; x < std::min((at.x + 1) * edge_, geometry_.width); x += block_)
+      cut_block({x, y}, passable, tasks);
+  std::sort(tasks.begin(), tasks.end(), [](const auto& a, const auto& b) { return row_major(a.cell, b.cell); });
+  auto old = tile.tasks.begin();
+  for (FrontierTask& task : tasks) {
+    while (old != tile.tasks.end() && row_major(old->cell, task.cell)) ++old;
+    if (old == tile.tasks.end() || old->cell != task.cell) continue;
+    const bool lone = task.lone;
+    task = *old;
+    task.lone = lone;
+  }
+  tile.tasks = std::move(tasks);
+  tile.dirty = false;
+}
+
+void FrontierTasks::cut_block(Cell low, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const {
+  std::vector<Cell> open_cells;
+  for (int y = low.y; y < std::min(low.y + block_, geometry_.height); ++y)
+    for (int x = low.x; x < std::min(low.x + block_, geometry_.width); ++x)
+      if (open({x, y})) open_cells.push_back({x, y});
+  if (open_cells.size() == 1) {  // every block is like that when tasks are as fine as cells
+    tasks.push_back({.cell = open_cells.front(), .lone = 1 < least_});
+    return;
+  }
+  while (!open_cells.empty()) {
+    std::vector<Cell> piece{open_cells.front()};
+    open_cells.erase(open_cells.begin());
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      const auto touches = [at = piece[k]](Cell c) { return std::abs(c.x - at.x) <= 1 && std::abs(c.y - at.y) <= 1; };
+      std::copy_if(open_cells.begin(), open_cells.end(), std::back_inserter(piece), touches);
+      std::erase_if(open_cells, touches);
+    }
+    std::sort(piece.begin(), piece.end(), row_major);
+    const auto first = std::find_if(piece.begin(), piece.end(), [&](Cell c) { return passable.passable(c); });
+    tasks.push_back({.cell = first == piece.end() ? piece.front() : *first, .lone = piece.size() < least_});
+  }
+}
+
+double FrontierTasks::gain(const OccupancyGrid& map, FrontierTask& task, Cell stand, bool whole) const {
+  const Cell block{stand.x / revision_edge_, stand.y / revision_edge_};
+  std::uint64_t newest = 0;
+  for (int y = std::max(block.y - 1, 0); y <= std::min(block.y + 1, revisions_.height() - 1); ++y)
+    for (int x = std::max(block.x - 1, 0); x <= std::min(block.x + 1, revisions_.width() - 1); ++x)
+      newest = std::max(newest, revisions_[Cell{x, y}]);
+  if (task.stand == stand && task.revision >= newest) return task.gain;
+  task.stand = stand;
+  task.revision = revision_;
+  return task.gain = whole ? footprint_.area(map, stand) : footprint_.unseen_area(map, stand);
+}
+
+bool FrontierTasks::frontier_near(Cell c, double spacing) const {
+  if (is_frontier(c)) return true;
+  const int reach = block_reach(spacing);
+  for (int y = c.y - reach; y <= c.y + reach; ++y)
+    for (int x = c.x - reach; x <= c.x + reach; ++x)
+      if (is_frontier({x, y})) return true;
+  return false;
+}
+
+void FrontierTasks::give_up(Cell task, bool tried, double spacing) {
+  const int reach = block_reach(spacing);
+  for (int y = task.y - reach; y <= task.y + reach; ++y)
+    for (int x = task.x - reach; x <= task.x + reach; ++x) {
+      if (!is_frontier({x, y})) continue;
+      const std::size_t index = geometry_.index({x, y});
+      given_up_[index] |= tried;
+      if (block_ != 0) tile_of(index).dirty = true;
+    }
+}
+
+bool FrontierTasks::tried_in_vain(std::size_t index) const {
+  const auto at = given_up_.find(index);
+  return at != given_up_.end() && at->second;
+}
+
+}  // namespace outrider::explorer

@@ -1,0 +1,92 @@
+#pragma once
+// The frontier cut into tasks, kept up to date from what changes.
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "decision/footprint.hpp"
+#include "decision/frontier_map.hpp"
+#include "decision/passability.hpp"
+#include "world/robot.hpp"
+
+namespace outrider::explorer {
+
+/// One piece of frontier: the cell that stands for it, and what was last known of its worth.
+struct FrontierTask {
+  Cell cell;
+  bool lone = false;           ///< its block holds too few cells of it: has it company beyond?
+  Cell stand{-1, -1};          ///< where `gain` was computed for
+  double gain = 0.0;           ///< area in view of `stand` that counts [m^2]
+  std::uint64_t revision = 0;  ///< of the map when `gain` was computed
+};
+
+/// The tasks of one robot's map: one a block of cells and 8-connected piece of frontier within it, its first cell that a
+/// robot can stand on, else its first. Neither depends on where the robot is. Blocks lie in tiles; a tile is cut anew
+/// when somebody looks at it after a change.
+class FrontierTasks {
+ public:
+  FrontierTasks(const RobotSpec& spec, const GridGeometry& geometry);
+
+  /// The map changed there, and so did the mask of passable cells. O(changed).
+  void update(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
+              std::span<const std::uint32_t> mask_changed);
+  /// Edge of the blocks [m]. Another one than before costs a pass over the map.
+  void set_spacing(double spacing);
+  /// Calls visit(FrontierTask&) for all tasks whose tile touches the square of half edge `reach` [m] around `at`.
+  template <class Visit>
+  void for_near(const decision::Passability& passable, Cell at, double reach, Visit&& visit) {
+    const auto [low, high] = tiles_around(at, reach);
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        Tile& tile = tiles_[Cell{x, y}];
+        if (tile.dirty) cut(tile, {x, y}, passable);
+        for (FrontierTask& task : tile.tasks)
+          if (!task.lone || frontiers_.has_company(task.cell, least_)) visit(task);
+      }
+  }
+  /// The unseen area in view of `stand` [m^2], or with `whole` all of it; remembered with the task until the map around
+  /// changes.
+  double gain(const OccupancyGrid& map, FrontierTask& task, Cell stand, bool whole) const;
+  /// What gain() can be at most, without looking: knowledge grows, so what was unseen once is a bound (cells that turn
+  /// from occupied to free are too rare to matter) [m^2].
+  double most_gain(const FrontierTask& task, Cell stand) const { return task.stand == stand ? task.gain : most_gain(); }
+  double most_gain() const { return most_gain_; }
+
+  bool is_frontier(Cell c) const { return frontiers_.is_frontier(c); }
+  /// Some frontier is left within a block's reach of `c`.
+  bool frontier_near(Cell c, double spacing) const;
+  /// Takes the frontier around `task` off the list for good. `tried`: the robot stood right there.
+  void give_up(Cell task, bool tried, double spacing);
+  /// Was the cell given up after the robot stood right there?
+  bool tried_in_vain(std::size_t index) const;
+
+ private:
+  struct Tile {
+    bool dirty = false;
+    std::vector<FrontierTask> tasks;  // by row, then column
+  };
+
+  std::pair<Cell, Cell> tiles_around(Cell at, double reach) const;
+  Tile& tile_of(std::size_t index);
+  void cut(Tile& tile, Cell at, const decision::Passability& passable);
+  void cut_block(Cell low, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const;
+  bool open(Cell c) const { return frontiers_.is_frontier(c) && !given_up_.contains(geometry_.index(c)); }
+  int block_reach(double spacing) const { return static_cast<int>(spacing / 2.0 / geometry_.resolution); }
+
+  GridGeometry geometry_;
+  std::size_t least_;       // cells of a piece of frontier that is worth a task
+  decision::FrontierMap frontiers_;
+  int block_ = 0;           // edge [cells]
+  int edge_ = 0;            // of a tile [cells]
+  Grid<Tile> tiles_;        // in units of tiles
+  std::unordered_map<std::size_t, bool> given_up_;  // cell -> tried; looked up, never iterated
+  decision::Footprint footprint_;
+  double most_gain_;
+  int revision_edge_;                // of a block of revisions_: the footprint reaches one block far at most [cells]
+  Grid<std::uint64_t> revisions_;    // when each block last changed
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace outrider::explorer
