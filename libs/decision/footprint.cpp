@@ -6,19 +6,21 @@
 
 namespace outrider::decision {
 
-Footprint::Footprint(double range, double resolution) {
+Footprint::Footprint(double range, const GridGeometry& geometry)
+    : reach_(static_cast<int>(range / geometry.resolution) + 2) {
+  const double resolution = geometry.resolution;
   constexpr int kFewest = 16, kMost = 48;
   const int n = std::clamp(static_cast<int>(std::ceil(2.0 * kPi * range / resolution)), kFewest, kMost);
   const double wedge = 2.0 * kPi / n;
-  const int reach = static_cast<int>(range / resolution) + 2;
-  const GridGeometry local{resolution, {-(reach + 0.5) * resolution, -(reach + 0.5) * resolution}, 2 * reach + 1,
-                           2 * reach + 1};
+  const GridGeometry local{resolution, {-(reach_ + 0.5) * resolution, -(reach_ + 0.5) * resolution}, 2 * reach_ + 1,
+                           2 * reach_ + 1};
   for (int i = 0; i < n; ++i) {
     std::vector<Step> ray;
     std::vector<double> entry;
     const double angle = (i + 0.5) * wedge;
     walk_ray(local, {0.0, 0.0}, std::cos(angle), std::sin(angle), range, [&](Cell c, double t) {
-      ray.push_back({{c.x - reach, c.y - reach}, 0.0});
+      const Cell offset{c.x - reach_, c.y - reach_};
+      ray.push_back({offset, static_cast<std::ptrdiff_t>(offset.y) * geometry.width + offset.x, 0.0});
       entry.push_back(t);
       return true;
     });
@@ -31,12 +33,13 @@ Footprint::Footprint(double range, double resolution) {
 
 template <class Counts>
 double Footprint::sum(const OccupancyGrid& map, Cell from, Counts&& counts) const {
+  const bool inside = map.contains({from.x - reach_, from.y - reach_}) && map.contains({from.x + reach_, from.y + reach_});
+  const CellState* center = map.data().data() + map.geometry().index(from);
   double area = 0.0;
   for (const auto& ray : rays_) {
     for (const Step& step : ray) {
-      const Cell c{from.x + step.offset.x, from.y + step.offset.y};
-      if (!map.contains(c)) break;
-      const CellState state = map[c];
+      if (!inside && !map.contains({from.x + step.offset.x, from.y + step.offset.y})) break;
+      const CellState state = center[step.index];
       if (state == CellState::kOccupied) break;
       if (counts(state)) area += step.area;
     }

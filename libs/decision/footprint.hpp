@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "world/grid.hpp"
@@ -10,8 +11,8 @@ namespace outrider::decision {
 /// subset". Rays over the known map; unknown cells let the view through, occupied ones end it.
 class Footprint {
  public:
-  /// `range` [m] of the sensor, `resolution` [m] of the grid. Precomputes the rays.
-  Footprint(double range, double resolution);
+  /// `range` [m] of the sensor. For maps of this geometry. Precomputes the rays.
+  Footprint(double range, const GridGeometry& geometry);
 
   /// Unknown area within range and in line of sight of `from` [m^2]. O(rays x range / resolution).
   double unseen_area(const OccupancyGrid& map, Cell from) const;
@@ -24,8 +25,10 @@ class Footprint {
 
   struct Step {
     Cell offset;
-    double area;  // share of the disc that this cell of the ray stands for [m^2]
+    std::ptrdiff_t index;  // the same as a difference of indices
+    double area;           // share of the disc that this cell of the ray stands for [m^2]
   };
+  int reach_;  // no offset is longer in x or y [cells]
   std::vector<std::vector<Step>> rays_;
 };
 

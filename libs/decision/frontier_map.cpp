@@ -32,7 +32,7 @@ std::span<const std::uint32_t> FrontierMap::update(const OccupancyGrid& map, std
   flipped_.clear();
   for (const std::uint32_t index : changed) {
     const std::uint8_t cell = cells_[index];
-    const auto before = static_cast<CellState>(cell >> kStateShift), now = map[index];
+    const auto before = static_cast<CellState>((cell & kState) >> kStateShift), now = map[index];
     if (before == now) continue;
     store(index, static_cast<std::uint8_t>((cell & kUnknownNeighbours) | static_cast<int>(now) << kStateShift));
     if ((before == CellState::kUnknown) == (now == CellState::kUnknown)) continue;
@@ -46,8 +46,9 @@ std::span<const std::uint32_t> FrontierMap::update(const OccupancyGrid& map, std
 }
 
 void FrontierMap::store(std::size_t index, std::uint8_t cell) {
-  const bool was = frontier(cells_[index]), is = frontier(cell);
-  cells_[index] = cell;
+  constexpr auto kFree = static_cast<std::uint8_t>(static_cast<int>(CellState::kFree) << kStateShift);
+  const bool was = is_frontier(index), is = (cell & kState) == kFree && (cell & kUnknownNeighbours) != 0;
+  cells_[index] = static_cast<std::uint8_t>((cell & (kUnknownNeighbours | kState)) | (is ? kFrontier : 0));
   if (was == is) return;
   count_ += is ? 1U : static_cast<std::size_t>(-1);
   flipped_.push_back(static_cast<std::uint32_t>(index));

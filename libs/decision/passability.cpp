@@ -20,6 +20,19 @@ void clear_row(Grid<std::uint8_t>& mask, int y, int begin, int end) {
   if (begin < end) std::fill_n(&mask[Cell{begin, y}], end - begin, std::uint8_t{0});
 }
 
+/// Calls visit(cell) once for each cell that is too near to the edge of the map, as if occupied cells lay around it.
+template <class Visit>
+void for_border(const GridGeometry& g, const std::vector<int>& half_widths, Visit&& visit) {
+  const int margin = half_widths.empty() ? 0 : half_widths.front() - 1;
+  for (int y = 0; y < g.height; ++y) {
+    const bool whole_row = y < margin || y >= g.height - margin;
+    for (int x = 0; x < g.width; ++x) {
+      if (!whole_row && x >= margin && x < g.width - margin) x = g.width - margin;
+      if (x < g.width) visit(Cell{x, y});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<int> forbidden_half_widths(double radius_m, double resolution) {
@@ -47,7 +60,9 @@ Passability::Passability(const GridGeometry& geometry, double radius_m)
       half_widths_(forbidden_half_widths(radius_m, geometry.resolution)),
       known_(geometry, CellState::kUnknown),
       obstacles_(geometry),
-      mask_(geometry) {}
+      mask_(geometry) {
+  for_border(geometry, half_widths_, [&](Cell c) { obstacles_[c] = 1; });
+}
 
 std::span<const std::uint32_t> Passability::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed) {
   assert(map.geometry() == mask_.geometry());
@@ -117,6 +132,7 @@ Grid<std::uint8_t> passable_mask(const OccupancyGrid& map, double radius_m) {
         clear_row(mask, y + dy, begin - half + 1, x + half);
       }
     }
+  for_border(map.geometry(), half_widths, [&](Cell c) { mask[c] = 0; });
   return mask;
 }
 

@@ -16,8 +16,8 @@ namespace outrider::decision {
 std::vector<int> forbidden_half_widths(double radius_m, double resolution);
 
 /// Where the centre of a disc robot may be: cells known free whose distance from the cell centre to every occupied
-/// cell's square is at least the radius. Unknown cells are not passable themselves but do not inflate, and neither
-/// does the border of the map.
+/// cell's square, and to the edge of the map, is at least the radius. Unknown cells are not passable themselves but do
+/// not inflate.
 class Passability {
  public:
   /// Everything is unknown. Throws InputError when the radius [m] is negative, not finite or above 128 cells.

@@ -12,6 +12,7 @@ constexpr double kPatience = 0.3;        // [s] blocked before anything is done 
 constexpr double kStuck = 3.0;           // [s] blocked before detours are given up and room is asked for
 constexpr double kTryAgain = 0.5;        // [s] between attempts
 constexpr double kGiveUp = 15.0;         // [s] blocked before the task is given back
+constexpr int kMostBlocked = 3;          // times that a task is given back before it is given up
 constexpr double kRoomTimeout = 8.0;     // [s] that room is made for somebody, beside the way there
 constexpr double kMostWait = 6.0;        // [s] that a close team-mate is waited for
 constexpr double kNoWait = 10.0;         // [s] after that in which nobody is waited for
@@ -205,7 +206,11 @@ void Explorer::resolve_block(double now_s) {
   if (now_s > blocked_since_s_ + kGiveUp && !making_room_for_) {
     blocked_since_s_ = -1.0;
     asks_.reset();
-    if (task_) end_task("blocked", now_s);
+    if (task_) {
+      if (++blocked_tries_[map_.states().geometry().index(task_->cell)] >= kMostBlocked)
+        board_.give_up(task_->cell, false, settings_.grain.spacing);
+      end_task("blocked", now_s);
+    }
     stop();
     return;
   }

@@ -7,6 +7,7 @@ namespace outrider::explorer {
 namespace {
 
 constexpr double kLookAround = 0.3;    // [s] at the stand before a task counts as not observable
+constexpr double kLookAgain = 0.5;     // [s] between questions whether a task is still worth its way
 constexpr double kAskAgain = 2.0;      // [s] between questions to a coordinator that had nothing for us
 constexpr int kIdlePriority = 1000;    // robots without a task make room for those that have one
 
@@ -40,7 +41,6 @@ void Explorer::sense(double now_s) {
   note_trail();
   sightings_ = sensing.sightings;
   take_in(sensing);
-  changed_.clear();
   note_news(now_s);
   share();
 }
@@ -137,6 +137,7 @@ void Explorer::act(double now_s) {
   if (status_news_ || now_s >= status_due_s_) send_status(now_s);
   for (Message& message : exchange_.speak(now_s)) bus_.send(std::move(message));
   settled_ = exchange_.settled(now_s);
+  changed_.clear();
 }
 
 void Explorer::check_task(double now_s) {
@@ -146,15 +147,19 @@ void Explorer::check_task(double now_s) {
     return end_task(arrived_ ? "reached" : "seen from afar", now_s);
   if (!changed_.empty() && !way_is_passable() && !making_room_for_ && !plan(task_->stand))
     return end_task("no way", now_s);
+  if (!changed_.empty() && now_s >= look_at_s_) {
+    look_at_s_ = now_s + kLookAgain;
+    if (!board_.is_worth_it(map_.states(), task_->stand)) return end_task("too little left", now_s);
+  }
   if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
-    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing);
+    board_.give_up(task_->cell, task_->stand == task_->cell, settings_.grain.spacing);
     stop();
     return end_task("out of time", now_s);
   }
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
-    board_.give_up(task_->cell, task_->stand, settings_.grain.spacing);
+    board_.give_up(task_->cell, task_->stand == task_->cell, settings_.grain.spacing);
     end_task("not observable", now_s);
   }
 }

@@ -2,6 +2,7 @@
 // One robot: scan -> map -> frontiers -> coordinate -> goal -> motion. Runs unchanged in the simulator and live.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -44,7 +45,8 @@ struct GoalEvent {
 struct TaskEndEvent {
   RobotId robot;
   Cell task;
-  const char* how;  ///< "reached", "seen from afar", "no way", "not observable", "blocked", "out of time", "reassigned"
+  const char* how;  ///< "reached", "seen from afar", "too little left", "no way", "not observable", "blocked",
+                    ///< "out of time", "reassigned"
 };
 struct PhaseEvent {
   RobotId robot;
@@ -161,6 +163,7 @@ class Explorer {
   double refused_s_ = -1e9;            // when the coordinator last had nothing for us
   double deadline_s_ = 0.0;            // for the task [s]
   double arrived_s_ = 0.0;             // when the stand was reached
+  double look_at_s_ = 0.0;             // when to ask next whether the task is still worth its way
   double new_area_ = 0.0;              // Delta A of the auction period so far [m^2]
   double period_begin_s_ = 0.0;
   double status_due_s_ = 0.0;
@@ -169,6 +172,7 @@ class Explorer {
 
   double blocked_since_s_ = -1.0;      // < 0: not blocked
   double last_try_s_ = -1e9;
+  std::map<std::size_t, int> blocked_tries_;  // cell of a task -> how often the way there stayed blocked
   std::optional<RobotId> asks_;        // whom we ask to make room
   std::optional<RobotId> making_room_for_;
   bool room_is_for_silent_ = false;

@@ -23,10 +23,13 @@ FrontierTasks::FrontierTasks(const RobotSpec& spec, const GridGeometry& geometry
     : geometry_(geometry),
       least_(static_cast<std::size_t>(std::max(1.0, std::ceil(spec.radius / geometry.resolution - 1e-9)))),
       frontiers_(geometry),
-      footprint_(spec.range, geometry.resolution),
+      footprint_(spec.range, geometry),
       most_gain_(kPi * spec.range * spec.range * (1.0 + 1e-6)),
+      least_gain_(0.25 * kPi * spec.radius * spec.radius),
       revision_edge_(static_cast<int>(std::min(spec.range / geometry.resolution, 1e6)) + 1),
-      revisions_(blocks_of(geometry, revision_edge_)) {}
+      revisions_(blocks_of(geometry, revision_edge_)) {
+  if (least_gain_ < 0.5 * geometry.cell_area()) least_gain_ = 0.0;
+}
 
 void FrontierTasks::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
                            std::span<const std::uint32_t> mask_changed) {
@@ -67,10 +70,16 @@ std::pair<Cell, Cell> FrontierTasks::tiles_around(Cell at, double reach) const {
 /// Finds the tile's tasks; those that were there before keep what is known of them.
 void FrontierTasks::cut(Tile& tile, Cell at, const decision::Passability& passable) {
   std::vector<FrontierTask> tasks;
-  for (int y = at.y * edge_; y < std::min((at.y + 1) * edge_, geometry_.height); y += block_)
-    for (int x = at.x * edge_; x < std::min((at.x + 1) * edge_, geometry_.width); x += block_)
-      cut_block({x, y}, passable, tasks);
-  std::sort(tasks.begin(), tasks.end(), [](const auto& a, const auto& b) { return row_major(a.cell, b.cell); });
+  const Cell low{at.x * edge_, at.y * edge_};
+  const Cell high{std::min(low.x + edge_, geometry_.width), std::min(low.y + edge_, geometry_.height)};
+  if (block_ == 1) {
+    for_open(low, high, [&](Cell c) { tasks.push_back({.cell = c, .lone = 1 < least_}); });
+  } else {
+    for (int y = low.y; y < high.y; y += block_)
+      for (int x = low.x; x < high.x; x += block_)
+        cut_block({x, y}, {std::min(x + block_, high.x), std::min(y + block_, high.y)}, passable, tasks);
+    std::sort(tasks.begin(), tasks.end(), [](const auto& a, const auto& b) { return row_major(a.cell, b.cell); });
+  }
   auto old = tile.tasks.begin();
   for (FrontierTask& task : tasks) {
     while (old != tile.tasks.end() && row_major(old->cell, task.cell)) ++old;
@@ -83,15 +92,18 @@ void FrontierTasks::cut(Tile& tile, Cell at, const decision::Passability& passab
   tile.dirty = false;
 }
 
-void FrontierTasks::cut_block(Cell low, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const {
+/// Visits the frontier cells of [low, high) that were not given up, row by row.
+template <class Visit>
+void FrontierTasks::for_open(Cell low, Cell high, Visit&& visit) const {
+  frontiers_.for_frontier(low, high, [&](Cell c) {
+    if (given_up_.empty() || !given_up_.contains(geometry_.index(c))) visit(c);
+  });
+}
+
+void FrontierTasks::cut_block(Cell low, Cell high, const decision::Passability& passable,
+                              std::vector<FrontierTask>& tasks) const {
   std::vector<Cell> open_cells;
-  for (int y = low.y; y < std::min(low.y + block_, geometry_.height); ++y)
-    for (int x = low.x; x < std::min(low.x + block_, geometry_.width); ++x)
-      if (open({x, y})) open_cells.push_back({x, y});
-  if (open_cells.size() == 1) {  // every block is like that when tasks are as fine as cells
-    tasks.push_back({.cell = open_cells.front(), .lone = 1 < least_});
-    return;
-  }
+  for_open(low, high, [&](Cell c) { open_cells.push_back(c); });
   while (!open_cells.empty()) {
     std::vector<Cell> piece{open_cells.front()};
     open_cells.erase(open_cells.begin());
@@ -115,7 +127,8 @@ double FrontierTasks::gain(const OccupancyGrid& map, FrontierTask& task, Cell st
   if (task.stand == stand && task.revision >= newest) return task.gain;
   task.stand = stand;
   task.revision = revision_;
-  return task.gain = whole ? footprint_.area(map, stand) : footprint_.unseen_area(map, stand);
+  task.unseen = footprint_.unseen_area(map, stand);
+  return task.gain = whole ? footprint_.area(map, stand) : task.unseen;
 }
 
 bool FrontierTasks::frontier_near(Cell c, double spacing) const {

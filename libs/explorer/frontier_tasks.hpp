@@ -19,6 +19,7 @@ struct FrontierTask {
   bool lone = false;           ///< its block holds too few cells of it: has it company beyond?
   Cell stand{-1, -1};          ///< where `gain` was computed for
   double gain = 0.0;           ///< area in view of `stand` that counts [m^2]
+  double unseen = 0.0;         ///< the unknown part of it [m^2]
   std::uint64_t revision = 0;  ///< of the map when `gain` was computed
 };
 
@@ -53,6 +54,14 @@ class FrontierTasks {
   /// from occupied to free are too rare to matter) [m^2].
   double most_gain(const FrontierTask& task, Cell stand) const { return task.stand == stand ? task.gain : most_gain(); }
   double most_gain() const { return most_gain_; }
+  /// Tasks that show less than this are left-overs: a quarter of the robot's own disc, nothing that it could drive on; 0
+  /// where that is less than half a cell [m^2].
+  double least_gain() const { return least_gain_; }
+  /// As far as is known: see gain(). A left-over never becomes more.
+  bool is_left_over(const FrontierTask& task, Cell stand) const {
+    return task.stand == stand && task.unseen < least_gain_;
+  }
+  double unseen(const OccupancyGrid& map, Cell stand) const { return footprint_.unseen_area(map, stand); }
 
   bool is_frontier(Cell c) const { return frontiers_.is_frontier(c); }
   /// Some frontier is left within a block's reach of `c`.
@@ -71,8 +80,9 @@ class FrontierTasks {
   std::pair<Cell, Cell> tiles_around(Cell at, double reach) const;
   Tile& tile_of(std::size_t index);
   void cut(Tile& tile, Cell at, const decision::Passability& passable);
-  void cut_block(Cell low, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const;
-  bool open(Cell c) const { return frontiers_.is_frontier(c) && !given_up_.contains(geometry_.index(c)); }
+  void cut_block(Cell low, Cell high, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const;
+  template <class Visit>
+  void for_open(Cell low, Cell high, Visit&& visit) const;
   int block_reach(double spacing) const { return static_cast<int>(spacing / 2.0 / geometry_.resolution); }
 
   GridGeometry geometry_;
@@ -83,7 +93,7 @@ class FrontierTasks {
   Grid<Tile> tiles_;        // in units of tiles
   std::unordered_map<std::size_t, bool> given_up_;  // cell -> tried; looked up, never iterated
   decision::Footprint footprint_;
-  double most_gain_;
+  double most_gain_, least_gain_;
   int revision_edge_;                // of a block of revisions_: the footprint reaches one block far at most [cells]
   Grid<std::uint64_t> revisions_;    // when each block last changed
   std::uint64_t revision_ = 0;

@@ -102,7 +102,7 @@ template <class Good>
 std::optional<Cell> TaskBoard::stand_for(const OccupancyGrid& map, Cell task, Good&& good) const {
   for (const Cell offset : near_) {
     const Cell c{task.x + offset.x, task.y + offset.y};
-    if (geometry_.contains(c) && good(c) && line_of_sight(map, c, task)) return c;
+    if (geometry_.contains(c) && good(c) && (c == task || line_of_sight(map, c, task))) return c;
   }
   return std::nullopt;
 }
@@ -112,8 +112,12 @@ std::optional<Cell> TaskBoard::stand_for(const OccupancyGrid& map, Cell task, Go
 std::vector<TaskBoard::Offer> TaskBoard::offers(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
                                                 double beyond, double reach, bool gains) {
   std::vector<Offer> offers;
-  const double stand_off = near_.empty() ? 0.0 : spec_.radius + 3.0 * geometry_.resolution;
-  tasks_.for_near(passable, at, 1.02 * reach + stand_off, [&](FrontierTask& task) {  // octile lengths are 1 % short
+  const double stand_off = spec_.radius + 3.0 * geometry_.resolution;
+  const double farthest = 1.02 * reach + stand_off;  // octile lengths are up to 1 % short
+  const double farthest2 = farthest * farthest / geometry_.cell_area();
+  tasks_.for_near(passable, at, farthest, [&](FrontierTask& task) {
+    const double dx = task.cell.x - at.x, dy = task.cell.y - at.y;
+    if (dx * dx + dy * dy > farthest2) return;
     auto stand = stand_for(map, task.cell, [&](Cell c) { return passable.passable(c); });
     double distance = stand ? field_.metres(*stand) : decision::ReachField::kNoLimit;
     if (distance <= beyond || (distance > reach && !field_.exhausted())) return;
@@ -128,14 +132,30 @@ std::vector<TaskBoard::Offer> TaskBoard::offers(const OccupancyGrid& map, const 
   return offers;
 }
 
+/// How far to search after all within `reach` [m] is on the list: as far as a task may matter; `reach` when none does.
+double TaskBoard::next_reach(const Shortlist& list, double reach, bool gains) const {
+  constexpr double kFarther = 1.6, kClose = 0.03;
+  const auto matters = [&](double distance) {
+    const auto gain = static_cast<float>(gains ? tasks_.most_gain() : 0.0);
+    return list.matters(list.most_bid({{}, {}, gain, static_cast<float>(distance)}));
+  };
+  double near = reach, far = kFarther * reach;
+  if (!list.bounded() || matters(far)) return far;
+  if (!matters(near)) return near;
+  while (far > near * (1.0 + kClose)) {
+    const double middle = 0.5 * (near + far);
+    (matters(middle) ? near : far) = middle;
+  }
+  return far;
+}
+
 std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
                                          const TaskGrain& grain) {
-  constexpr double kFarther = 1.6;  // each ring of the search reaches so many times as far as the last
   tasks_.set_spacing(grain.spacing);
   search_from(at);
   Shortlist list(grain);
-  double beyond = -1.0;
-  for (double reach = spec_.range + geometry_.resolution;; reach *= kFarther) {
+  double beyond = -1.0, reach = spec_.range + geometry_.resolution;
+  for (;;) {
     field_.extend(reach);
     if (field_.exhausted()) reach = decision::ReachField::kNoLimit;
     std::vector<Offer> ring = offers(map, passable, at, beyond, reach, grain.gains);
@@ -143,13 +163,17 @@ std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decisio
     std::stable_sort(ring.begin(), ring.end(), [](const Offer& a, const Offer& b) { return a.most_bid > b.most_bid; });
     for (Offer& offer : ring) {
       if (!list.matters(offer.most_bid)) break;
-      if (grain.gains) offer.entry.gain = static_cast<float>(tasks_.gain(map, *offer.task, offer.entry.stand, grain.whole_footprint));
+      if (grain.gains || tasks_.least_gain() > 0.0) {
+        if (tasks_.is_left_over(*offer.task, offer.entry.stand)) continue;
+        const double gain = tasks_.gain(map, *offer.task, offer.entry.stand, grain.whole_footprint);
+        if (tasks_.is_left_over(*offer.task, offer.entry.stand)) continue;
+        if (grain.gains) offer.entry.gain = static_cast<float>(gain);
+      }
       list.add(offer.entry);
     }
-    if (field_.exhausted() || list.full()) break;
-    const auto best_gain = static_cast<float>(grain.gains ? tasks_.most_gain() : 0.0);
-    if (list.bounded() && !list.matters(list.most_bid({{}, {}, best_gain, static_cast<float>(reach)}))) break;
     beyond = reach;
+    reach = list.full() || field_.exhausted() ? beyond : next_reach(list, beyond, grain.gains);
+    if (reach == beyond) break;
   }
   return list.take();
 }
@@ -181,10 +205,12 @@ std::vector<Left> TaskBoard::left(const OccupancyGrid& map) const {
             unknown.insert(static_cast<std::uint32_t>(geometry_.index(n)));
         }
     }
-    const bool too_small = static_cast<double>(cluster.size()) * geometry_.resolution < spec_.radius;
+    const double unknown_m2 = static_cast<double>(unknown.size()) * geometry_.cell_area();
+    const bool too_small = static_cast<double>(cluster.size()) * geometry_.resolution < spec_.radius ||
+                           unknown_m2 < tasks_.least_gain();
     const LeftReason why = tried ? LeftReason::kNotObservable
                            : too_small ? LeftReason::kTooSmall : LeftReason::kUnreachable;
-    result.push_back({cluster.centroid, static_cast<double>(unknown.size()) * geometry_.cell_area(), why});
+    result.push_back({cluster.centroid, unknown_m2, why});
   }
   return result;
 }

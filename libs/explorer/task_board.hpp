@@ -53,8 +53,12 @@ class TaskBoard {
   std::vector<Cell> path_to(Cell at, Cell stand);
   /// Some frontier is left within a block's reach of `task`.
   bool frontier_near(Cell task, double spacing) const { return tasks_.frontier_near(task, spacing); }
-  /// The task was served and is still a frontier: never try it again from here.
-  void give_up(Cell task, Cell stand, double spacing) { tasks_.give_up(task, stand == task, spacing); }
+  /// Going to `stand` would still show something worth the way.
+  bool is_worth_it(const OccupancyGrid& map, Cell stand) const {
+    return tasks_.least_gain() == 0.0 || tasks_.unseen(map, stand) >= tasks_.least_gain();
+  }
+  /// The frontier around `task` is never tried again. `tried`: the robot stood right there and saw nothing new.
+  void give_up(Cell task, bool tried, double spacing) { tasks_.give_up(task, tried, spacing); }
   /// Frontier clusters of `map` with the reason why this robot would leave each. O(cells).
   std::vector<Left> left(const OccupancyGrid& map) const;
 
@@ -69,6 +73,7 @@ class TaskBoard {
   void search_from(Cell at);
   std::vector<Offer> offers(const OccupancyGrid& map, const decision::Passability& passable, Cell at, double beyond,
                             double reach, bool gains);
+  double next_reach(const Shortlist& list, double reach, bool gains) const;
   template <class Good>
   std::optional<Cell> stand_for(const OccupancyGrid& map, Cell task, Good&& good) const;
 

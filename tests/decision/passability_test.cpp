@@ -12,10 +12,11 @@
 namespace outrider::decision {
 namespace {
 
-/// Distance [m] from a point to the nearest occupied square, by looking at all of them.
+/// Distance [m] from a point to the edge of the map or the nearest occupied square, by looking at all of them.
 double clearance(const OccupancyGrid& map, Point p) {
   const GridGeometry& g = map.geometry();
-  double nearest = std::numeric_limits<double>::infinity();
+  const Point high{g.origin.x + g.width * g.resolution, g.origin.y + g.height * g.resolution};
+  double nearest = std::min({p.x - g.origin.x, p.y - g.origin.y, high.x - p.x, high.y - p.y});
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (map[i] != CellState::kOccupied) continue;
     const Point center = g.center(g.cell_at(i));
@@ -82,19 +83,23 @@ TEST(Passability, FollowsChangesInAnyOrder) {
   }
 }
 
-TEST(Passability, TouchingIsAllowed) {
-  const OccupancyGrid map = test::grid_from_ascii("#......", 0.1);
-  // The centre of cell x is (x - 0.5) cells from the square: a radius of 1.5 cells touches at x = 2.
-  EXPECT_EQ(draw(passable_mask(map, 0.15)), "##.....\n");  // 2 * 0.15 / 0.1 is not 3 in doubles
-  EXPECT_EQ(draw(passable_mask(map, 0.1501)), "###....\n");
-  EXPECT_EQ(draw(passable_mask(map, 0.0)), "#......\n");
-  EXPECT_EQ(draw(passable_mask(map, 0.05)), "#......\n");
+/// The middle row of the mask of a map of nine rows like this one.
+std::string middle_of_nine(const std::string& row, double resolution, double radius) {
+  std::string rows;
+  for (int k = 0; k < 9; ++k) rows += row + '\n';
+  const std::string drawn = draw(passable_mask(test::grid_from_ascii(rows, resolution), radius));
+  return drawn.substr(4 * (row.size() + 1), row.size());
 }
 
-TEST(Passability, UnknownIsClosedButDoesNotInflate) {
-  const OccupancyGrid map = test::grid_from_ascii("..?..#..");
-  EXPECT_EQ(draw(passable_mask(map, 1.0)), "..#.###.\n");
+TEST(Passability, TouchingIsAllowed) {
+  // The centre of cell x is (x - 0.5) cells from the square: a radius of 1.5 cells touches at x = 2.
+  EXPECT_EQ(middle_of_nine("#......", 0.1, 0.15), "##....#");  // 2 * 0.15 / 0.1 is not 3 in doubles
+  EXPECT_EQ(middle_of_nine("#......", 0.1, 0.1501), "###..##");
+  EXPECT_EQ(middle_of_nine("#......", 0.1, 0.0), "#......");
+  EXPECT_EQ(middle_of_nine("#......", 0.1, 0.05), "#......");
 }
+
+TEST(Passability, UnknownIsClosedButDoesNotInflate) { EXPECT_EQ(middle_of_nine("..?..#..", 1.0, 1.0), "#.#.####"); }
 
 TEST(Passability, RefusesImpossibleRadii) {
   const GridGeometry g{0.05, {}, 4, 4};

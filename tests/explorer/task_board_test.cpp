@@ -77,12 +77,13 @@ struct Oracle {
     decision::DistanceField field;
     const Cell source[] = {at};
     field.compute(passable.mask(), source);
-    const decision::Footprint footprint(spec.range, map.geometry().resolution);
+    const decision::Footprint footprint(spec.range, map.geometry());
     std::vector<BidEntry> result;
     for (const Cell task : tasks(spacing)) {
       auto place = stand(task, [&](Cell c) { return passable.passable(c); });
       if (!place || !field.reached(*place)) place = stand(task, [&](Cell c) { return field.reached(c); });
       if (!place) continue;
+      if (footprint.unseen_area(map, *place) < 0.25 * kPi * spec.radius * spec.radius) continue;  // a left-over
       result.push_back({task, *place, static_cast<float>(footprint.unseen_area(map, *place)),
                         static_cast<float>(field.metres(*place))});
     }
@@ -202,7 +203,7 @@ TEST(TaskBoard, WhatWasGivenUpIsNotOfferedAgain) {
   auto entries = d.board.entries(d.map, d.passable, at, {.spacing = 0.5});
   for (std::size_t round = 0; !entries.empty(); ++round) {
     ASSERT_LT(round, d.map.size());
-    d.board.give_up(entries.front().task, entries.front().stand, 0.5);
+    d.board.give_up(entries.front().task, true, 0.5);
     const auto fewer = d.board.entries(d.map, d.passable, at, {.spacing = 0.5});
     ASSERT_LT(fewer.size(), entries.size());
     entries = fewer;
