@@ -110,7 +110,9 @@ void show_result(const BenchResult& result, const std::string& json_name, Contex
   const auto tables = all_tables(result);
   if (!ctx.out.empty()) write_folder(result, tables, ctx.out, json_name);
   if (ctx.json) {
-    fmt::print("{}\n", report::to_text(bench_json(result), 2));
+    const BenchInfo* info = info_of(result.design.bench);
+    const bool own = info != nullptr && info->json != nullptr;
+    fmt::print("{}\n", report::to_text(own ? info->json(result) : bench_json(result), 2));
   } else if (!ctx.quiet) {
     fmt::print("{}", text_of(result, tables));
     if (!ctx.out.empty()) fmt::print("report: {}\n", (ctx.out / "report.html").string());
@@ -122,7 +124,7 @@ void show_result(const BenchResult& result, const std::string& json_name, Contex
 }
 
 const std::vector<BenchInfo>& benches() {
-  static const std::vector<BenchInfo> all{bench_dai2014(), bench_matignon2012()};
+  static const std::vector<BenchInfo> all{bench_dai2014(), bench_explore_bench(), bench_oracle(), bench_speed(), bench_matignon2012()};
   return all;
 }
 

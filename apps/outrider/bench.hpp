@@ -32,6 +32,8 @@ struct Experiment {
   /// Called from several threads at once; the outcome follows from the trial alone. Nothing: the algorithm does not
   /// apply to this case, and there is no row.
   std::function<std::optional<Outcome>(const Trial&)> run;
+  /// Adds what needs all rows of one trial, such as ratios between algorithms. May be empty.
+  std::function<void(std::vector<report::BenchRow>&)> complete;
   bool serial = false;  ///< measures wall-clock time: one trial at a time, whatever --jobs
 };
 
@@ -48,6 +50,7 @@ struct BenchInfo {
   BuildExperiment (*declare)(CLI::App& verb) = nullptr;
   std::vector<report::Table> (*tables)(const report::BenchResult&) = nullptr;  ///< the paper's layout, shown first
   std::string (*figures)(const report::BenchResult&) = nullptr;               ///< HTML
+  report::Json (*json)(const report::BenchResult&) = nullptr;                 ///< in place of bench_json, for --json
 };
 
 /// All benches, in the order of `outrider list benches`.
@@ -77,8 +80,14 @@ void show_result(const report::BenchResult& result, const std::string& json_name
 /// The seed of a trial: of the command's seed, the case and the number.
 std::uint64_t trial_seed(std::uint64_t seed, const std::string& case_name, int number);
 
+/// Adds `ratio_oracle`: each row's time_s over that of the trial's `oracle`, where there is one.
+void add_oracle_ratio(std::vector<report::BenchRow>& trial);
+
 // One file a bench.
 BenchInfo bench_dai2014();
+BenchInfo bench_explore_bench();
+BenchInfo bench_oracle();
+BenchInfo bench_speed();
 BenchInfo bench_matignon2012();
 
 }  // namespace outrider::app

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <random>
 
+#include "auction/bid_options.hpp"
 #include "bench.hpp"
 #include "dai2014_data.hpp"
+#include "dai2014_paper.hpp"
 #include "decision/passability.hpp"
+#include "explorer/known_map_plan.hpp"
+#include "explorer/lower_bound.hpp"
 #include "explorer/mission.hpp"
 #include "report/metrics.hpp"
 #include "report/trajectory_crossings.hpp"
@@ -24,7 +28,7 @@ using report::Json;
 
 constexpr double kPaperCells = 100.0;  // edge of the paper's field
 constexpr double kPaperAim = 0.95;     // of the environment
-constexpr int kRandomMany = 200;
+constexpr int kRandomMany = 400;
 
 struct Options {
   std::string world = "field";
@@ -32,6 +36,8 @@ struct Options {
   std::vector<std::string> cases{"random", "uniform", "random-many"};
   std::vector<std::string> algorithms;
   int random_many = kRandomMany;
+  int evaluations = explorer::KnownMapPlanOptions{}.evaluations;
+  std::string bids;  // as --bids, on top of the paper-like settings
 };
 
 /// A coordinator with its parameters.
@@ -40,18 +46,31 @@ struct Variant {
   auction::BidParameters bids;
 };
 
-std::vector<Variant> variants() {
-  const auction::BidParameters usual;
-  return {
-      {"daa", "daa", fmt::format("DAA-A, alpha {:g} s", usual.alpha), usual},
-      {"ea", "ea", "EA-A", usual},
-      {"ia", "ia", fmt::format("IA-A, rho {:g}", usual.rho), usual},
-      {"ta", "ta", "TA-A, constant utility", usual},
-      {"nearest", "nearest", "nearest frontier", usual},
-      {"nearest-reserved", "nearest-reserved", "nearest frontier that no team-mate heads for", usual},
-      {"burgard", "burgard", "Burgard et al. 2005", usual},
-      {"hungarian", "hungarian", "least total travel time to frontier clusters", usual},
+/// A rule of the paper in a setting: changes to the defaults as --bids writes them.
+Variant rule(const std::string& name, const std::string& coordinator, const std::string& label, const std::string& changes) {
+  Variant v{name, coordinator, {}, {}};
+  auction::set_bid_options(v.bids, changes);
+  const std::string setting = auction::bid_options_text(v.bids);
+  v.about = label + (setting.empty() ? ", default setting" : ", " + setting);
+  return v;
+}
+
+/// The paper's four rules twice, every other coordinator, and the oracle. docs/benches.md tells how the settings were found.
+std::vector<Variant> variants(const Options& o) {
+  std::vector<Variant> all{
+      rule("daa", "daa", "DAA-A, paper-like", o.bids),
+      rule("ea", "ea", "EA-A, paper-like", o.bids),
+      rule("ia", "ia", "IA-A, paper-like", "rho=0.2," + o.bids),
+      rule("ta", "ta", "TA-A, paper-like", o.bids),
+      rule("daa-tuned", "daa", "DAA-A, best-tuned", "alpha=1"),
+      rule("ea-tuned", "ea", "EA-A, best-tuned", ""),
+      rule("ia-tuned", "ia", "IA-A, best-tuned", "rho=2"),
+      rule("ta-tuned", "ta", "TA-A, best-tuned", "ta=unseen,rho=3"),
   };
+  for (const auto& info : explorer::coordinators())
+    if (!auction::bid_rule(info.name)) all.push_back({info.name, info.name, info.one_line, {}});
+  all.push_back({"oracle", "oracle", fmt::format("local search with the map known, {} evaluations", o.evaluations), {}});
+  return all;
 }
 
 /// A world with the places where the team may start.
@@ -171,17 +190,40 @@ report::Metrics metrics_of(const MissionResult& result) {
   for (const double m2 : at_end.robot_m2) total += m2;
   for (std::size_t i = 0; i < result.robots.size(); ++i)
     metrics.emplace_back("area_share_" + result.robots[i].spec.name, total > 0.0 ? at_end.robot_m2[i] / total : 0.0);
-  for (std::size_t i = 0; i < result.robots.size(); ++i)
+  const report::Crossings crossings = report::trajectory_crossings(trajectories);
+  for (std::size_t i = 0; i < result.robots.size(); ++i) {
     metrics.emplace_back("path_m_" + result.robots[i].spec.name, report::path_length(trajectories[i]));
-  metrics.emplace_back("intersections", static_cast<double>(report::trajectory_crossings(trajectories).count));
+    metrics.emplace_back("intersections_" + result.robots[i].spec.name, static_cast<double>(crossings.per_robot[i]));
+  }
+  metrics.emplace_back("intersections", static_cast<double>(crossings.count));
   std::vector<report::RobotRecord> seen;
   for (const auto& robot : result.robots) seen.push_back({robot.spec, {}, std::nullopt, robot.seen, 0.0});
   metrics.emplace_back("overlap", report::seen_areas(seen)->overlap_fraction());
   return metrics;
 }
 
-Outcome run_trial(const Ground& ground, const Variant& variant, const Trial& trial) {
+/// For the drawing of figure 3: trajectories until 95 % [m], and the world's corners.
+Json drawing(const MissionResult& result, const GridGeometry& g) {
+  const double end = reached(result, kPaperAim).value_or(result.mission_time_s);
+  const auto centi = [](double v) { return std::round(v * 100.0) / 100.0; };
+  Json trajectories = Json::object();
+  for (const auto& robot : result.robots) {
+    Json points = Json::array();
+    for (const TimedPose& p : until(robot.trajectory, end)) points.push_back({centi(p.pose.x), centi(p.pose.y)});
+    trajectories[robot.spec.name] = std::move(points);
+  }
+  return {{"trajectories", std::move(trajectories)},
+          {"world_m", {g.origin.x, g.origin.y, g.origin.x + g.width * g.resolution, g.origin.y + g.height * g.resolution}}};
+}
+
+Outcome run_oracle(const Ground& ground, const std::vector<RobotSpec>& team, int evaluations, const Trial& trial) {
+  const auto plan = explorer::plan_with_known_map(ground.world.map, team, {kPaperAim, evaluations, trial.seed});
+  return {{{"time_s", plan.time_s}}, {}};
+}
+
+Outcome run_trial(const Ground& ground, const Variant& variant, const Options& o, const Trial& trial) {
   const std::vector<RobotSpec> team = ground.at(starts_of(ground, trial));
+  if (variant.name == "oracle") return run_oracle(ground, team, o.evaluations, trial);
   MissionSettings settings;
   settings.coordinator = variant.coordinator;
   settings.coordination.bids = variant.bids;
@@ -191,35 +233,29 @@ Outcome run_trial(const Ground& ground, const Variant& variant, const Trial& tri
   settings.record_events = false;
   const MissionResult result = explorer::run_mission(ground.world.map, team, settings,
                                                      [&](double, double) { return !trial.interrupted->load(); });
-  return {metrics_of(result), {}};
+  const bool drawn = trial.case_name == "random" && trial.number == kDaiShown;
+  return {metrics_of(result), drawn ? drawing(result, ground.world.map.geometry()) : Json::object()};
+}
+
+/// Time over the lower bound and over the oracle's, for the rows of one trial.
+void add_ratios(const Ground& ground, std::uint64_t seed, std::vector<report::BenchRow>& rows) {
+  if (rows.empty()) return;
+  const Trial trial{rows[0].case_name, rows[0].trial, {}, trial_seed(seed, rows[0].case_name, rows[0].trial)};
+  const double bound_s = explorer::lower_bound_s(ground.world.map, ground.at(starts_of(ground, trial)), kPaperAim, false);
+  for (report::BenchRow& row : rows)
+    if (const auto time = row.metric("time_s"); time && bound_s > 0.0) row.metrics.emplace_back("ratio_bound", *time / bound_s);
+  add_oracle_ratio(rows);
 }
 
 std::vector<report::BenchMetric> metric_list(const std::vector<RobotSpec>& team) {
-  std::vector<report::BenchMetric> metrics{{"time_s", "s", 1}, {"time99_s", "s", 1}};
+  std::vector<report::BenchMetric> metrics{
+      {"time_s", "s", 1}, {"time99_s", "s", 1}, {"ratio_bound", "", 3, false}, {"ratio_oracle", "", 3, false}};
   for (const auto& robot : team) metrics.push_back({"area_share_" + robot.name, "", 3, false});
   for (const auto& robot : team) metrics.push_back({"path_m_" + robot.name, "m", 1, false, false});
+  for (const auto& robot : team) metrics.push_back({"intersections_" + robot.name, "", 1, false, false});
   metrics.push_back({"intersections", "", 1});
   metrics.push_back({"overlap", "", 3});
   return metrics;
-}
-
-/// Means of table 4; areas of table 7.
-std::vector<report::PublishedFigure> published_figures() {
-  std::vector<report::PublishedFigure> figures{
-      {"random", "daa", "time_s", 155.6},  {"random", "ea", "time_s", 203.4},  {"random", "ia", "time_s", 213.4},
-      {"random", "ta", "time_s", 184.3},   {"uniform", "daa", "time_s", 174.5}, {"uniform", "ea", "time_s", 202.7},
-      {"uniform", "ia", "time_s", 208.1},  {"uniform", "ta", "time_s", 268.6}};
-  constexpr std::array<const char*, 4> kRules{"daa", "ea", "ia", "ta"};
-  constexpr double kRandomShares[4][4] = {
-      {10.43, 77.32, 4.99, 7.26}, {8.95, 79.82, 4.83, 6.39}, {8.97, 80.02, 4.89, 6.12}, {10.63, 76.98, 5.03, 7.36}};
-  constexpr double kUniformShares[4][4] = {
-      {10.17, 77.53, 4.98, 7.32}, {9.12, 79.71, 4.77, 6.40}, {8.87, 80.41, 4.65, 6.07}, {10.53, 77.21, 5.68, 6.58}};
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t i = 0; i < 4; ++i) {
-      figures.push_back({"random", kRules[a], fmt::format("area_share_R{}", i + 1), kRandomShares[a][i] / 100.0});
-      figures.push_back({"uniform", kRules[a], fmt::format("area_share_R{}", i + 1), kUniformShares[a][i] / 100.0});
-    }
-  return figures;
 }
 
 /// Which of the paper's start cells had to be moved, and where to.
@@ -249,26 +285,27 @@ Experiment experiment_of(const Options& o, const BenchArguments& arguments) {
     e.design.cases.push_back({name, ground->world.name, std::min(all, arguments.trials.value_or(all))});
   }
   auto chosen = std::make_shared<std::vector<Variant>>();
-  for (Variant& v : variants())
+  for (Variant& v : variants(o))
     if (o.algorithms.empty() || std::find(o.algorithms.begin(), o.algorithms.end(), v.name) != o.algorithms.end())
       chosen->push_back(std::move(v));
   for (const Variant& v : *chosen) e.design.algorithms.push_back({v.name, v.about});
   e.design.metrics = metric_list(ground->team);
-  e.design.references = {"daa"};
-  e.design.published = published_figures();
-  e.design.options = {{"world", o.world}};
+  e.design.references = {"scout", "daa"};
+  e.design.published = dai2014_published();
+  e.design.options = {{"world", o.world}, {"bids", o.bids}, {"evaluations", o.evaluations}};
   e.design.notes = moved_starts(*ground, e.design.cases);
-  e.run = [ground, chosen](const Trial& trial) {
+  e.run = [ground, chosen, o](const Trial& trial) {
     const auto variant = std::find_if(chosen->begin(), chosen->end(), [&](const auto& v) { return v.name == trial.algorithm; });
-    return std::optional(run_trial(*ground, *variant, trial));
+    return std::optional(run_trial(*ground, *variant, o, trial));
   };
+  e.complete = [ground, seed = arguments.seed](std::vector<report::BenchRow>& rows) { add_ratios(*ground, seed, rows); };
   return e;
 }
 
 BuildExperiment declare(CLI::App& verb) {
   auto o = std::make_shared<Options>();
   std::vector<std::string> names;
-  for (const Variant& v : variants()) names.push_back(v.name);
+  for (const Variant& v : variants({})) names.push_back(v.name);
   verb.add_option("--world", o->world, "a world or map file; the start cells are scaled to its size")->capture_default_str();
   verb.add_option("--resolution", o->resolution, "edge of a cell for images, .map and .txt [m]")
       ->check(number_in(1e-3, 1e3))->type_name("M");
@@ -277,13 +314,17 @@ BuildExperiment declare(CLI::App& verb) {
   verb.add_option("--algorithms", o->algorithms, "comma-separated (default: all)")->delimiter(',')->check(CLI::IsMember(names));
   verb.add_option("--random-many", o->random_many, "placements of the case random-many")
       ->check(CLI::Range(1, 1000000))->capture_default_str();
+  verb.add_option("--evaluations", o->evaluations, "of changed plans in the oracle's local search")
+      ->check(CLI::Range(0, 100000000))->capture_default_str();
+  verb.add_option("--bids", o->bids, "change the paper-like settings, as in 'outrider explore'")->type_name("KEY=VALUE,...");
   return [o](const BenchArguments& arguments) { return experiment_of(*o, arguments); };
 }
 
 }  // namespace
 
 BenchInfo bench_dai2014() {
-  return {"dai2014", "Dai, Yao, Zhao 2014: auctions for four unlike robots on a sparse field", declare, nullptr, nullptr};
+  return {"dai2014", "Dai, Yao, Zhao 2014: auctions for four unlike robots on a sparse field", declare, dai2014_tables,
+          dai2014_figures};
 }
 
 }  // namespace outrider::app

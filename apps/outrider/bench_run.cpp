@@ -2,6 +2,7 @@
 
 #include <ctime>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <thread>
 
@@ -103,10 +104,16 @@ report::BenchResult run_experiment(const Experiment& experiment, std::uint64_t s
   if (shard.of > 1) result.shard = std::to_string(shard.index) + "/" + std::to_string(shard.of);
   result.interrupted = !workers.complete();
   result.timing["cpu_s"] = cpu_seconds() - cpu_begin;
-  for (std::size_t k = 0; k < trials.size(); ++k)
+  std::vector<report::BenchRow> rows;  // of one trial
+  for (std::size_t k = 0; k < trials.size(); ++k) {
     if (outcomes[k])
-      result.rows.push_back({trials[k].case_name, trials[k].number, trials[k].algorithm, outcomes[k]->metrics,
-                             outcomes[k]->extra});
+      rows.push_back({trials[k].case_name, trials[k].number, trials[k].algorithm, outcomes[k]->metrics, outcomes[k]->extra});
+    if (k + 1 < trials.size() && trials[k + 1].case_name == trials[k].case_name && trials[k + 1].number == trials[k].number)
+      continue;
+    if (experiment.complete) experiment.complete(rows);
+    std::move(rows.begin(), rows.end(), std::back_inserter(result.rows));
+    rows.clear();
+  }
   return result;
 }
 

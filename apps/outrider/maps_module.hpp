@@ -12,6 +12,7 @@
 #include "explorer/explorer.hpp"
 #include "report/run_record.hpp"
 #include "slam_glue/map_files.hpp"
+#include "speed_works.hpp"
 
 namespace outrider::app {
 
@@ -36,6 +37,8 @@ class MapsModule {
   /// See explorer::make_scan_mapper.
   virtual std::unique_ptr<explorer::ScanMapper> make_scan_mapper(const GridGeometry& geometry,
                                                                  const RobotSpec& spec) const = 0;
+  /// What `bench speed` times; some references are OpenCV's.
+  virtual std::vector<Work> speed_works() const = 0;
 };
 
 /// Loads the module at the first call. Throws std::runtime_error when it is not there. Thread-safe.

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "explorer/lower_bound.hpp"
+#include "explorer/referee.hpp"
 
 namespace outrider::app {
 namespace {
@@ -87,6 +90,9 @@ class EventWriter {
       awards.push_back({{"robot", name(award.robot)}, {"task", at(award.task)}, {"value", milli(award.value)}});
     line["awards"] = std::move(awards);
     line["unheard"] = names(e.unheard);
+    const auction::RoundTime time = auction::round_time(auction::BidTable(e.sheets, geometry_), e.awards);
+    line["travel_s"] = milli(time.awarded_s);  // of the awards; the optimal assignment of the same bids needs
+    line["least_travel_s"] = milli(time.least_s);
   }
 
   const GridGeometry& geometry_;
@@ -115,6 +121,36 @@ Json result_json(const explorer::MissionResult& r) {
           {"left", left}};
 }
 
+/// The bound for what the run had to see, and how far above it the run was.
+void add_lower_bound(Json& json, const explorer::MissionResult& r, const explorer::MissionSettings& settings,
+                     const OccupancyGrid& truth) {
+  std::vector<RobotSpec> team;
+  for (const explorer::MissionRobot& robot : r.robots) team.push_back(robot.spec);
+  for (const explorer::Fault& fault : settings.faults)  // "slow" may also speed up
+    if (fault.kind == explorer::Fault::Kind::kSlow && fault.factor > 1.0)
+      team[static_cast<std::size_t>(fault.robot)].speed *= fault.factor;
+  const double bound = explorer::lower_bound_s(truth, team, std::min(settings.until, explorer::Referee::kExplored),
+                                               settings.sim.lidar);
+  const bool reached = r.status == explorer::MissionStatus::kExplored && bound > 0.0;
+  json["lower_bound_s"] = milli(bound);
+  json["competitive_ratio"] = reached ? Json(milli(r.time_s / bound)) : Json();
+}
+
+/// How far all rounds were from assignments with the least total travel time.
+void add_auction_gap(Json& json, const std::vector<Json>& events) {
+  std::size_t rounds = 0;
+  double travel = 0.0, least = 0.0;
+  for (const Json& event : events) {
+    if (event["event"] != "auction") continue;
+    ++rounds;
+    travel += event["travel_s"].get<double>();
+    least += event["least_travel_s"].get<double>();
+  }
+  if (rounds == 0) return;
+  json["auctions"] = {{"rounds", rounds}, {"travel_s", milli(travel)}, {"least_travel_s", milli(least)},
+                      {"gap", least > 0.0 ? Json(milli(travel / least - 1.0)) : Json()}};
+}
+
 }  // namespace
 
 report::RunRecord mission_record(explorer::MissionResult&& result, const explorer::MissionSettings& settings,
@@ -123,11 +159,13 @@ report::RunRecord mission_record(explorer::MissionResult&& result, const explore
   record.verb = "explore";
   record.coordinator = settings.coordinator;
   record.result = result_json(result);
+  add_lower_bound(record.result, result, settings, truth);
   for (explorer::MissionRobot& robot : result.robots)
     record.robots.push_back({robot.spec, std::move(robot.trajectory), std::move(robot.map), std::move(robot.seen),
                              robot.first_seen_m2});
   const EventWriter to_json(truth.geometry(), record.robots);
   for (const auto& [t, event] : result.events) record.events.push_back(to_json(t, event));
+  add_auction_gap(record.result, record.events);
   for (explorer::TimelinePoint& row : result.timeline)
     record.timeline.push_back({row.time_s, row.explored_fraction, row.explored_m2, std::move(row.robot_m2)});
   record.map = std::move(result.map);

@@ -39,9 +39,10 @@ class BidTable {
 /// True when nothing known blocks the straight line between two points; eq. 2 drops the influence of others.
 using Clear = std::function<bool(Point, Point)>;
 
-/// Sequential single-item auction (Dai 2014, section 4): one task a robot, U_p2 of eq. 2 follows every award. Influences
-/// below 1e-12 count as none. O(n m) bids at first, then an award touches only the bids near the winner's place and
-/// target; in the worst case O(n^2 m). Ties: lower robot, then lower task. With Rebid::kFinisher busy robots win nothing.
+/// Sequential single-item auction (Dai 2014, section 4): one task a robot, U_p2 of eq. 2 follows every award.
+/// Influences below 1e-12 count as none. O(n m) bids at first, then an award touches only the bids near the winner's
+/// place and target; in the worst case O(n^2 m). Ties: lower robot, then lower task. With Rebid::kFinisher busy robots
+/// win nothing.
 std::vector<Award> sequential_auction(const BidTable& table, BidRule rule, const BidParameters& parameters,
                                       const Clear& clear);
 
@@ -53,14 +54,15 @@ std::vector<Award> burgard_assignment(const BidTable& table, double beta, const 
 /// As many robots as possible are served.
 std::vector<Award> hungarian_assignment(const BidTable& table);
 
-/// Sequential single-item auctions of all tasks (Koenig et al. 2006), for the makespan: task by task goes to the robot that
-/// would be there first after all it has won already, straight lines between tasks. Awards in that order; `value` is minus
-/// the time of arrival [s]. O(m^2) bids and some.
+/// Sequential single-item auctions of all tasks (Koenig et al. 2006), for the makespan: task by task goes to the robot
+/// that would be there first after all it has won already, straight lines between tasks. Awards in that order; `value`
+/// is minus the time of arrival [s]. O(m^2) bids and some.
 std::vector<Award> all_tasks_auction(const BidTable& table);
 /// The first award of each robot: what it drives to before the next round.
 std::vector<Award> first_of_each(std::span<const Award> awards);
 
-/// Total travel time of a round [s], and the least possible for as many robots (the optimal assignment of the same bids).
+/// Total travel time of a round [s], and the least possible for as many robots (the optimal assignment of the same
+/// bids).
 struct RoundTime {
   double awarded_s = 0.0;
   double least_s = 0.0;

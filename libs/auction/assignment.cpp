@@ -16,8 +16,15 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 class Assignment {
  public:
   Assignment(std::span<const double> cost, std::size_t rows, std::size_t columns)
-      : cost_(cost), columns_(columns), u_(rows, 0.0), v_(columns, 0.0), row_of_(columns, -1), column_of_(rows, -1),
-        shortest_(columns), from_(columns), open_(columns) {
+      : cost_(cost),
+        columns_(columns),
+        u_(rows, 0.0),
+        v_(columns, 0.0),
+        row_of_(columns, -1),
+        column_of_(rows, -1),
+        shortest_(columns),
+        from_(columns),
+        open_(columns) {
     for (const double c : cost)
       if (c != kInf) unserved_ += std::abs(c);
   }

@@ -42,7 +42,7 @@ struct BidParameters {
   double alpha = 0.3;   ///< expected utility per explored rate, eq. 10 [s]
   Gain gain = Gain::kUnseen;
   Way way = Way::kShortest;
-  bool sight = true;    ///< team-mates behind something have no influence, eq. 2
+  bool sight = true;  ///< team-mates behind something have no influence, eq. 2
   TaUtility ta = TaUtility::kConstant;
   Turn turn = Turn::kBestBid;
   Rebid rebid = Rebid::kEverybody;

@@ -13,19 +13,30 @@ namespace {
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 constexpr double kFar = 27.6;  // exp(-kFar) = 1e-12: an influence from farther away is none
 
-/// The running auction of one task a robot, greedy and lazy (Minoux 1978): every robot's best bid is kept, an award changes
-/// U_p2 only around the winner's place and target, and where that may have lowered a best bid, its value stays as a bound
-/// until it is that robot's turn to be asked.
+/// The running auction of one task a robot, greedy and lazy (Minoux 1978): every robot's best bid is kept, an award
+/// changes U_p2 only around the winner's place and target, and where that may have lowered a best bid, its value stays
+/// as a bound until it is that robot's turn to be asked.
 class SequentialAuction {
  public:
   SequentialAuction(const BidTable& table, BidRule rule, const BidParameters& parameters, const Clear& clear)
-      : table_(table), rule_(rule), k_(parameters), clear_(clear), n_(table.robots()), m_(table.tasks()),
-        sees_(n_ * n_, kNotAsked), u_p2_(n_ * m_, 0.0), best_(n_), served_(n_, 0), sold_(m_, 0) {
+      : table_(table),
+        rule_(rule),
+        k_(parameters),
+        clear_(clear),
+        n_(table.robots()),
+        m_(table.tasks()),
+        sees_(n_ * n_, kNotAsked),
+        u_p2_(n_ * m_, 0.0),
+        best_(n_),
+        served_(n_, 0),
+        sold_(m_, 0) {
     for (std::size_t j = 0; j < n_; ++j) {
       const BidSheet& sheet = table.sheet(j);
       served_[j] = k_.rebid == Rebid::kFinisher && sheet.busy && sheet.goal;
-      if (served_[j]) keep(j, *sheet.goal);
-      else spread(j, {{sheet.pose.position(), -k_.gamma}});
+      if (served_[j])
+        keep(j, *sheet.goal);
+      else
+        spread(j, {{sheet.pose.position(), -k_.gamma}});
     }
   }
 
@@ -130,8 +141,7 @@ class SequentialAuction {
   bool sees(std::size_t i, std::size_t j) {
     if (!k_.sight) return true;
     signed char& answer = sees_[std::min(i, j) * n_ + std::max(i, j)];
-    if (answer == kNotAsked)
-      answer = clear_(table_.sheet(i).pose.position(), table_.sheet(j).pose.position());
+    if (answer == kNotAsked) answer = clear_(table_.sheet(i).pose.position(), table_.sheet(j).pose.position());
     return answer != 0;
   }
 
@@ -177,11 +187,11 @@ class AllTasksAuction {
 
  private:
   struct Robot {
-    Point last;             // its last task
-    double free_s = 0.0;    // when it is there
-    bool under_way = false; // has won a task
+    Point last;              // its last task
+    double free_s = 0.0;     // when it is there
+    bool under_way = false;  // has won a task
     std::size_t best = 0;
-    double best_s = -kNone; // when it could be at `best`
+    double best_s = -kNone;  // when it could be at `best`
   };
 
   void find_best(std::size_t i) {

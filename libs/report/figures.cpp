@@ -132,6 +132,8 @@ const std::vector<std::pair<std::string, Value>>& catalogue() {
       {"spread of shares (std)", plain({"workload_std"}, "{:.3f}")},
       {"trajectory crossings", plain({"trajectory_intersections"}, "{:.0f}")},
       {"interactions", interactions},
+      {"auction rounds", plain({"auctions", "rounds"}, "{:.0f}")},
+      {"travel above the optimal assignment", plain({"auctions", "gap"}, "{:.1f} %", 100.0)},
       {"messages sent", plain({"messages", "sent"}, "{:.0f}")},
       {"messages delivered", plain({"messages", "delivered"}, "{:.0f}")},
       {"data sent", plain({"messages", "bytes"}, "{:.1f} kB", 1e-3)},

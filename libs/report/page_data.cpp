@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "report/metrics.hpp"
@@ -115,6 +116,27 @@ Json events_json(const RunRecord& record) {
           {"packed", packed({reinterpret_cast<const std::uint8_t*>(lines.data()), lines.size()})}};
 }
 
+/// A(k) of every robot as it was when it bid (Dai 2014, eq. 8): {name: {"t", "a"}} [s], [m^2/s].
+Json rates_json(const RunRecord& record) {
+  std::map<std::string, std::vector<std::pair<double, double>>> rates;
+  for (const Json& event : record.events) {
+    if (event.value("event", std::string()) != "auction" || !event.contains("bids")) continue;
+    for (const Json& bid : event["bids"])
+      if (bid.contains("explored_rate_m2_s")) rates[bid["robot"]].emplace_back(event["t"].get<double>(), bid["explored_rate_m2_s"].get<double>());
+  }
+  Json json = Json::object();
+  for (const RobotRecord& robot : record.robots) {
+    const auto& own = rates[robot.spec.name];
+    Json t = Json::array(), a = Json::array();
+    for (const std::size_t i : thinned(own.size(), kMaxRows)) {
+      t.push_back(rounded(own[i].first, 100.0));
+      a.push_back(rounded(own[i].second, 1000.0));
+    }
+    if (!t.empty()) json[robot.spec.name] = {{"t", std::move(t)}, {"a", std::move(a)}};
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -152,6 +174,7 @@ Json page_data(const RunRecord& record, const Json& result) {
             {"robots", robots_json(record)},
             {"timeline", timeline_json(record)},
             {"events", events_json(record)}};
+  if (Json rates = rates_json(record); !rates.empty()) data["rates"] = std::move(rates);
   if (record.map.size() > 0) data["map"] = map_json(record);
   for (const char* key : {"path_m", "share", "overlap", "left"})
     if (result.contains(key)) data[key] = result[key];

@@ -1,5 +1,4 @@
 #include "auction/allocation.hpp"
-#include "auction/assignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,8 @@
 #include <limits>
 #include <optional>
 #include <random>
+
+#include "auction/assignment.hpp"
 
 namespace outrider::auction {
 namespace {
@@ -148,8 +149,9 @@ TEST(AllTasksAuction, EqualsPlainGreed) {
       for (std::size_t i = 0; i < sheets.size(); ++i)
         for (std::size_t p = 0; p < table.tasks(); ++p) {
           if (sold[p] || table.entry(i, p) == nullptr) continue;
-          const double d = last[i] < 0 ? static_cast<double>(table.entry(i, p)->distance)
-                                       : distance(table.task_point(static_cast<std::size_t>(last[i])), table.task_point(p));
+          const double d = last[i] < 0
+                               ? static_cast<double>(table.entry(i, p)->distance)
+                               : distance(table.task_point(static_cast<std::size_t>(last[i])), table.task_point(p));
           const double at = free_s[i] + d / table.sheet(i).speed;
           if (at < best) best = at, robot = i, task = p;
         }
@@ -195,7 +197,8 @@ TEST(Allocations, GiveOneTaskARobotAndOneRobotATask) {
       const auto& awards = outcomes[k];
       for (std::size_t a = 0; a < awards.size(); ++a) {
         const auto& entries = sheets[static_cast<std::size_t>(awards[a].robot)].entries;
-        EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.task == awards[a].task; }));
+        EXPECT_TRUE(
+            std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.task == awards[a].task; }));
         for (std::size_t b = a + 1; b < awards.size(); ++b) {
           EXPECT_NE(awards[a].robot, awards[b].robot);
           EXPECT_NE(awards[a].task, awards[b].task);
@@ -219,7 +222,8 @@ TEST(SequentialAuction, RobotOrderServesTheFirstRobotFirst) {
 std::pair<std::size_t, double> brute_force(const std::vector<double>& cost, std::size_t rows, std::size_t columns) {
   std::pair<std::size_t, double> best{0, 0.0};
   std::vector<char> used(columns, 0);
-  const std::function<void(std::size_t, std::size_t, double)> go = [&](std::size_t row, std::size_t served, double sum) {
+  const std::function<void(std::size_t, std::size_t, double)> go = [&](std::size_t row, std::size_t served,
+                                                                       double sum) {
     if (row == rows) {
       if (served > best.first || (served == best.first && sum < best.second)) best = {served, sum};
       return;

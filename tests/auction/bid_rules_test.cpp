@@ -10,9 +10,9 @@ namespace {
 TEST(BidRules, AreThePapersFormulas) {
   const BidTerms t{.u_p1 = 20.0, .u_p2 = -0.5, .d_p = 8.0, .v = 2.0, .a_k = 3.0};
   const BidParameters k{.rho = 0.5, .gamma = 1.0, .weight = 2.0, .alpha = 4.0};
-  EXPECT_DOUBLE_EQ(bid_ia(t, k), 20.0 + 2.0 * -0.5 - 0.5 * 8.0);                 // eq. 3
-  EXPECT_DOUBLE_EQ(bid_ea(t, k), (20.0 - 1.0) / (8.0 / 2.0));                    // eq. 5
-  EXPECT_DOUBLE_EQ(bid_daa(t, k), (20.0 - 1.0 + 4.0 * 3.0) / (8.0 / 2.0));       // eq. 12
+  EXPECT_DOUBLE_EQ(bid_ia(t, k), 20.0 + 2.0 * -0.5 - 0.5 * 8.0);            // eq. 3
+  EXPECT_DOUBLE_EQ(bid_ea(t, k), (20.0 - 1.0) / (8.0 / 2.0));               // eq. 5
+  EXPECT_DOUBLE_EQ(bid_daa(t, k), (20.0 - 1.0 + 4.0 * 3.0) / (8.0 / 2.0));  // eq. 12
   EXPECT_DOUBLE_EQ(bid_ta(t, k), -8.0);
 }
 

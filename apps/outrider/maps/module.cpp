@@ -34,6 +34,7 @@ class Module : public MapsModule {
                                                          const RobotSpec& spec) const override {
     return explorer::make_scan_mapper(geometry, spec);
   }
+  std::vector<Work> speed_works() const override { return app::speed_works(); }
 };
 
 }  // namespace

@@ -60,8 +60,13 @@ function addChart(canvas, config) {
   return chart;
 }
 
-/** Curves over time. series: [{label, t, y, tone (a CSS variable), width, dash}]; onSeek(time) is called on a click. */
-function curveChart(canvas, series, yTitle, onSeek) {
+const kPercent = { most: 1, tick: (v) => Math.round(100 * v) + " %", tip: (v) => (100 * v).toFixed(1) + " %" };
+
+/**
+ * Curves over time. series: [{label, t, y, tone (a CSS variable), width, dash}]; onSeek(time) is called on a click.
+ * unit: {most: the axis goes at least there, tick(value), tip(value): labels}
+ */
+function curveChart(canvas, series, yTitle, onSeek, unit = kPercent) {
   const cursor = {
     id: "cursor",
     time: null,
@@ -100,14 +105,14 @@ function curveChart(canvas, series, yTitle, onSeek) {
       onClick: (event, _, c) => onSeek && onSeek(c.scales.x.getValueForPixel(event.x)),
       scales: {
         x: axis("time [s]", { type: "linear", min: 0, max: last || 1, grid: { display: false }, ticks: { includeBounds: false } }),
-        y: axis(yTitle, { min: 0, suggestedMax: 1, ticks: { callback: (v) => Math.round(100 * v) + " %" } }),
+        y: axis(yTitle, { min: 0, suggestedMax: unit.most, ticks: { callback: unit.tick } }),
       },
       plugins: {
         legend: { display: series.length > 1, align: "end", labels: { boxWidth: 18, boxHeight: 0, padding: 12 } },
         tooltip: {
           callbacks: {
             title: (items) => items[0].parsed.x.toFixed(1) + " s",
-            label: (item) => `${item.dataset.label}: ${(100 * item.parsed.y).toFixed(1)} %`,
+            label: (item) => `${item.dataset.label}: ${unit.tip(item.parsed.y)}`,
           },
         },
       },

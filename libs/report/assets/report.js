@@ -155,6 +155,12 @@ function drawCharts(data, seek) {
   })).filter((s) => s.y.length > 0) : [];
   byId("each-robot").hidden = each.length === 0;
   const curve = t.length ? curveChart(byId("coverage"), [team, ...each], "explored", seek) : { setTime() {} };
+  byId("rates-figure").hidden = !data.rates || names.length > 12;
+  const rates = data.rates && names.length <= 12 ? names.flatMap((name, i) => data.rates[name] ? [{
+    label: name, t: data.rates[name].t, y: data.rates[name].a, tone: tones[i], width: 1.4, dash: dashOf(i),
+  }] : []) : [];
+  const rate = rates.length ? curveChart(byId("rates"), rates, "explored per second", seek,
+    { most: 0, tick: (v) => `${+v.toFixed(2)} m²/s`, tip: (v) => `${v.toFixed(2)} m²/s` }) : { setTime() {} };
   const percent = (digits) => (v) => `${(100 * v).toFixed(digits)} %`;
   const bars = (id, values, unit, tick) => {
     const shown = values && names.length > 1;  // one robot: the table says it all
@@ -170,7 +176,7 @@ function drawCharts(data, seek) {
     barChart(byId("overlap"), ["one robot", "two", "three or more"], Object.values(seen).map((v) => v / sum),
       ["--seen-1", "--seen-2", "--seen-3"], percent(1), percent(0));
   }
-  return curve;
+  return { setTime(time) { curve.setTime(time); rate.setTime(time); } };
 }
 
 /** Per robot: [{t, goal: [x, y] or null}], ascending. */

@@ -1,0 +1,277 @@
+#include "explorer/known_map_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "decision/passability.hpp"
+#include "explorer/known_map_views.hpp"
+#include "explorer/mission.hpp"
+
+namespace outrider::explorer {
+namespace {
+
+constexpr std::size_t kMostWayPoints = 900;    // of the lattice
+constexpr int kNearOf = 24;                    // draws of which the nearest counts as near
+constexpr double kHot = 0.03, kCold = 0.0005;  // temperature at the ends, parts of the plan's time
+
+using Tours = std::vector<std::vector<Cell>>;
+
+class Planner {
+ public:
+  Planner(const OccupancyGrid& truth, const std::vector<RobotSpec>& team, const KnownMapPlanOptions& options)
+      : truth_(truth),
+        team_(team),
+        options_(options),
+        random_(options.seed),
+        counts_(reachable_area(truth, team)),
+        seen_(truth.geometry(), 0) {
+    for (const RobotSpec& robot : team) {
+      auto& mask = masks_.try_emplace(robot.radius).first->second;
+      if (mask.size() == 0) mask = decision::passable_mask(truth, robot.radius);
+      auto& views = views_[{robot.range, robot.radius}];
+      if (!views) views = std::make_unique<Views>(truth, mask, robot.range);
+      robots_.push_back({views.get(), truth.geometry().cell_of(robot.start.position()), robot.speed});
+    }
+    const auto all = std::count(counts_.data().begin(), counts_.data().end(), 1);
+    aim_ = static_cast<int>(std::ceil(options.fraction * static_cast<double>(all) - 1e-9));
+    choose_lattice();
+  }
+
+  KnownMapPlan plan() {
+    Tours tours = greedy();
+    double time = evaluate(tours), best_time = time;
+    Tours best = tours;
+    for (int k = 0; k < options_.evaluations; ++k) {
+      const double heat = kHot * std::pow(kCold / kHot, static_cast<double>(k) / options_.evaluations) * best_time;
+      Tours changed = tours;
+      change(changed);
+      const double changed_time = evaluate(changed);
+      if (changed_time > time && std::exp((time - changed_time) / heat) < uniform()) continue;
+      tours = std::move(changed);
+      time = changed_time;
+      if (time < best_time) best_time = time, best = tours;
+    }
+    const bool reached = evaluate(best) == best_time && seen_count_ >= aim_;
+    return {reached ? std::optional(best_time) : std::nullopt, std::move(best)};
+  }
+
+ private:
+  struct Robot {
+    Views* views;
+    Cell start;
+    double speed;  // [m/s]
+  };
+  /// A robot while its tour is played.
+  struct Player {
+    const Leg* leg = nullptr;
+    std::size_t step = 0, next = 0;  // in the leg; of the tour
+    Cell at;
+    double next_s = 0.0;  // when it will be in the next cell; infinite at the end
+  };
+
+  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
+  double uniform() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
+
+  /// Way-points as dense as fits, on cells where the slimmest robot can be, and the starts.
+  void choose_lattice() {
+    const GridGeometry& g = truth_.geometry();
+    const Grid<std::uint8_t>& passable = masks_.begin()->second;
+    for (int spacing = 2; spacing == 2 || lattice_.size() > kMostWayPoints; ++spacing) {
+      lattice_.clear();
+      for (int y = std::min(spacing, g.height) / 2; y < g.height; y += spacing)
+        for (int x = std::min(spacing, g.width) / 2; x < g.width; x += spacing)
+          if (counts_[Cell{x, y}] && passable[Cell{x, y}]) lattice_.push_back({x, y});
+    }
+    for (const Robot& robot : robots_) lattice_.push_back(robot.start);
+  }
+
+  bool see(const std::vector<std::uint32_t>& cells) {
+    for (const std::uint32_t i : cells) {
+      if (seen_[i] == stamp_) continue;
+      seen_[i] = stamp_;
+      seen_count_ += counts_[i];
+    }
+    return seen_count_ >= aim_;
+  }
+
+  void begin_step(const Robot& robot, const std::vector<Cell>& tour, Player& p, double now_s) {
+    while (p.leg == nullptr || p.step == p.leg->size()) {
+      if (p.next == tour.size()) {
+        p.next_s = std::numeric_limits<double>::infinity();
+        return;
+      }
+      p.leg = &robot.views->leg(p.at, tour[p.next]);
+      if (!p.leg->empty()) p.at = tour[p.next];
+      p.step = 0;
+      ++p.next;
+    }
+    p.next_s = now_s + (*p.leg)[p.step].metres / robot.speed;
+  }
+
+  /// When the aim is reached; plans that never do get their end and a fine by what is missing.
+  double evaluate(const Tours& tours) {
+    ++stamp_;
+    seen_count_ = 0;
+    players_.assign(robots_.size(), {});
+    for (std::size_t r = 0; r < robots_.size(); ++r) {
+      players_[r].at = robots_[r].start;
+      see(robots_[r].views->view(robots_[r].start));
+      begin_step(robots_[r], tours[r], players_[r], 0.0);
+    }
+    if (seen_count_ >= aim_) return 0.0;
+    double now_s = 0.0;
+    for (;;) {
+      const auto first = std::min_element(players_.begin(), players_.end(),
+                                          [](const Player& a, const Player& b) { return a.next_s < b.next_s; });
+      if (first->next_s == std::numeric_limits<double>::infinity()) break;
+      now_s = first->next_s;
+      if (see(*(*first->leg)[first->step].seen)) return now_s;
+      ++first->step;
+      const auto r = static_cast<std::size_t>(first - players_.begin());
+      begin_step(robots_[r], tours[r], *first, now_s);
+    }
+    return now_s + fine_s(aim_ - seen_count_);
+  }
+
+  /// What the missing cells would cost if each robot went on at half its sweep.
+  double fine_s(int missing) const {
+    double rate = 0.0;
+    for (const RobotSpec& robot : team_) rate += robot.speed * robot.range;
+    return 5.0 + missing * truth_.geometry().cell_area() / rate;
+  }
+
+  /// Whoever is free first goes where it newly sees most per time on the way.
+  Tours greedy() {
+    Tours tours(robots_.size());
+    ++stamp_;
+    seen_count_ = 0;
+    std::vector<Cell> at;
+    std::vector<double> free_s(robots_.size(), 0.0);
+    for (const Robot& robot : robots_) {
+      at.push_back(robot.start);
+      see(robot.views->view(robot.start));
+    }
+    while (seen_count_ < aim_) {
+      const auto r = static_cast<std::size_t>(std::min_element(free_s.begin(), free_s.end()) - free_s.begin());
+      if (free_s[r] == std::numeric_limits<double>::infinity()) break;
+      const Robot& robot = robots_[r];
+      double best = 0.0;
+      Cell to;
+      for (const Cell candidate : lattice_) {
+        const double metres = robot.views->metres(at[r], candidate);
+        if (candidate == at[r] || !std::isfinite(metres)) continue;
+        const double rate = unseen_on(robot.views->leg(at[r], candidate)) / metres;
+        if (rate > best) best = rate, to = candidate;
+      }
+      if (best == 0.0) {  // the lattice shows nothing new: a way-point in what is left
+        if (const auto cell = nearest_unseen(robot, at[r]))
+          lattice_.push_back(*cell);
+        else
+          free_s[r] = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      for (const ViewStep& step : robot.views->leg(at[r], to)) see(*step.seen);
+      free_s[r] += robot.views->metres(at[r], to) / robot.speed;
+      tours[r].push_back(to);
+      at[r] = to;
+    }
+    return tours;
+  }
+
+  std::optional<Cell> nearest_unseen(const Robot& robot, Cell from) {
+    std::optional<Cell> nearest;
+    double metres = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      const Cell cell = truth_.geometry().cell_at(i);
+      if (!counts_[i] || seen_[i] == stamp_) continue;
+      if (const double way = robot.views->metres(cell, from); way < metres) metres = way, nearest = cell;
+    }
+    return nearest;
+  }
+
+  double unseen_on(const Leg& leg) {
+    fresh_.clear();
+    for (const ViewStep& step : leg)
+      for (const std::uint32_t i : *step.seen)
+        if (counts_[i] && seen_[i] != stamp_) fresh_.push_back(i), seen_[i] = stamp_;
+    for (const std::uint32_t i : fresh_) seen_[i] = stamp_ - 1;
+    return static_cast<double>(fresh_.size());
+  }
+
+  /// A way-point that is rather near to `c` than far from it.
+  Cell near(Cell c) {
+    Cell nearest = lattice_[below(lattice_.size())];
+    const auto away = [&](Cell other) { return std::hypot(other.x - c.x, other.y - c.y); };
+    for (int k = 1; k < kNearOf; ++k)
+      if (const Cell other = lattice_[below(lattice_.size())]; away(other) < away(nearest)) nearest = other;
+    return nearest;
+  }
+
+  void change(Tours& tours) {
+    const std::size_t a = below(tours.size()), b = below(tours.size());
+    auto& tour = tours[a];
+    const std::size_t i = tour.empty() ? 0 : below(tour.size());
+    const auto at = [](auto& list, std::size_t k) { return list.begin() + static_cast<std::ptrdiff_t>(k); };
+    switch (tour.empty() ? 2 : below(6)) {
+      case 0: {  // move some
+        const std::size_t n = std::min(tour.size() - i, 1 + below(4));
+        std::vector<Cell> some(at(tour, i), at(tour, i + n));
+        tour.erase(at(tour, i), at(tour, i + n));
+        if (below(2) == 0) std::reverse(some.begin(), some.end());
+        tours[b].insert(at(tours[b], below(tours[b].size() + 1)), some.begin(), some.end());
+        break;
+      }
+      case 1:
+        tour[i] = near(tour[i]);
+        break;
+      case 2:
+        tour.insert(at(tour, tour.empty() ? 0 : i), near(tour.empty() ? robots_[a].start : tour[i]));
+        break;
+      case 3:
+        tour.erase(at(tour, i));
+        break;
+      case 4: {  // reverse a stretch
+        const std::size_t j = below(tour.size());
+        std::reverse(at(tour, std::min(i, j)), at(tour, std::max(i, j) + 1));
+        break;
+      }
+      default: {  // exchange tails
+        if (a == b) break;
+        auto& other = tours[b];
+        const std::size_t j = below(other.size() + 1);
+        std::vector<Cell> tail(at(tour, i), tour.end());
+        tour.erase(at(tour, i), tour.end());
+        tour.insert(tour.end(), at(other, j), other.end());
+        other.erase(at(other, j), other.end());
+        other.insert(other.end(), tail.begin(), tail.end());
+      }
+    }
+  }
+
+  const OccupancyGrid& truth_;
+  const std::vector<RobotSpec>& team_;
+  KnownMapPlanOptions options_;
+  std::mt19937_64 random_;
+  Grid<std::uint8_t> counts_;  // 1: belongs to the reachable area
+  Grid<std::uint32_t> seen_;   // == stamp_: seen in this evaluation
+  std::uint32_t stamp_ = 1;
+  int seen_count_ = 0, aim_ = 0;
+  std::map<double, Grid<std::uint8_t>> masks_;                         // by radius
+  std::map<std::pair<double, double>, std::unique_ptr<Views>> views_;  // by range and radius
+  std::vector<Robot> robots_;
+  std::vector<Cell> lattice_;
+  std::vector<Player> players_;
+  std::vector<std::uint32_t> fresh_;
+};
+
+}  // namespace
+
+KnownMapPlan plan_with_known_map(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
+                                 const KnownMapPlanOptions& options) {
+  return Planner(truth, team, options).plan();
+}
+
+}  // namespace outrider::explorer
