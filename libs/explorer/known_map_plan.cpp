@@ -14,8 +14,9 @@ namespace outrider::explorer {
 namespace {
 
 constexpr std::size_t kMostWayPoints = 900;    // of the lattice
+constexpr double kWayPointCost = 0.05;         // [s]
 constexpr int kNearOf = 24;                    // draws of which the nearest counts as near
-constexpr double kHot = 0.03, kCold = 0.0005;  // temperature at the ends, parts of the plan's time
+constexpr double kHot = 0.02, kCold = 0.0005;  // temperature at the ends, parts of the plan's time
 
 using Tours = std::vector<std::vector<Cell>>;
 
@@ -40,22 +41,26 @@ class Planner {
     choose_lattice();
   }
 
-  KnownMapPlan plan() {
+  /// The search begins with the best of greed and these tours.
+  KnownMapPlan plan(std::vector<Tours> starts) {
     Tours tours = greedy();
-    double time = evaluate(tours), best_time = time;
+    double cost = cost_of(tours);
+    for (Tours& start : starts)
+      if (const double own = cost_of(start); own < cost) cost = own, tours = std::move(start);
+    double best_cost = cost;
     Tours best = tours;
     for (int k = 0; k < options_.evaluations; ++k) {
-      const double heat = kHot * std::pow(kCold / kHot, static_cast<double>(k) / options_.evaluations) * best_time;
+      const double heat = kHot * std::pow(kCold / kHot, static_cast<double>(k) / options_.evaluations) * best_cost;
       Tours changed = tours;
       change(changed);
-      const double changed_time = evaluate(changed);
-      if (changed_time > time && std::exp((time - changed_time) / heat) < uniform()) continue;
+      const double changed_cost = cost_of(changed);
+      if (changed_cost > cost && std::exp((cost - changed_cost) / heat) < uniform()) continue;
       tours = std::move(changed);
-      time = changed_time;
-      if (time < best_time) best_time = time, best = tours;
+      cost = changed_cost;
+      if (cost < best_cost) best_cost = cost, best = tours;
     }
-    const bool reached = evaluate(best) == best_time && seen_count_ >= aim_;
-    return {reached ? std::optional(best_time) : std::nullopt, std::move(best)};
+    const double time_s = evaluate(best);
+    return {seen_count_ >= aim_ ? std::optional(time_s) : std::nullopt, std::move(best)};
   }
 
  private:
@@ -86,6 +91,13 @@ class Planner {
           if (counts_[Cell{x, y}] && passable[Cell{x, y}]) lattice_.push_back({x, y});
     }
     for (const Robot& robot : robots_) lattice_.push_back(robot.start);
+  }
+
+  /// What the search makes small: the time, and a little for each way-point, so that those that do nothing go.
+  double cost_of(const Tours& tours) {
+    std::size_t points = 0;
+    for (const auto& tour : tours) points += tour.size();
+    return evaluate(tours) + kWayPointCost * static_cast<double>(points);
   }
 
   bool see(const std::vector<std::uint32_t>& cells) {
@@ -136,11 +148,11 @@ class Planner {
     return now_s + fine_s(aim_ - seen_count_);
   }
 
-  /// What the missing cells would cost if each robot went on at half its sweep.
+  /// What the missing cells would cost a team that sweeps badly: more than any sensible plan pays for them.
   double fine_s(int missing) const {
     double rate = 0.0;
-    for (const RobotSpec& robot : team_) rate += robot.speed * robot.range;
-    return 5.0 + missing * truth_.geometry().cell_area() / rate;
+    for (const RobotSpec& robot : team_) rate += 0.2 * robot.speed * robot.range;
+    return missing * truth_.geometry().cell_area() / rate;
   }
 
   /// Whoever is free first goes where it newly sees most per time on the way.
@@ -267,11 +279,39 @@ class Planner {
   std::vector<std::uint32_t> fresh_;
 };
 
+/// The tours that a coordinator without knowledge drives: a way-point every few cells.
+Tours tours_of(const std::string& coordinator, const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
+               double fraction) {
+  constexpr double kApart = 3.0;  // [cells]
+  MissionSettings settings;
+  settings.coordinator = coordinator;
+  settings.until = fraction;
+  settings.record_events = false;
+  const MissionResult result = run_mission(truth, team, settings);
+  Tours tours;
+  for (const MissionRobot& robot : result.robots) {
+    std::vector<Cell> tour;
+    Point last = robot.trajectory.front().pose.position();
+    for (const TimedPose& p : robot.trajectory) {
+      if (&p != &robot.trajectory.back() && distance(p.pose.position(), last) < kApart * truth.geometry().resolution)
+        continue;
+      last = p.pose.position();
+      tour.push_back(truth.geometry().cell_of(last));
+    }
+    tours.push_back(std::move(tour));
+  }
+  return tours;
+}
+
 }  // namespace
 
 KnownMapPlan plan_with_known_map(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
                                  const KnownMapPlanOptions& options) {
-  return Planner(truth, team, options).plan();
+  std::vector<Tours> starts;
+  for (const CoordinatorInfo& known : coordinators())
+    if (std::find(options.begin_with.begin(), options.begin_with.end(), known.name) != options.begin_with.end())
+      starts.push_back(tours_of(known.name, truth, team, options.fraction));
+  return Planner(truth, team, options).plan(std::move(starts));
 }
 
 }  // namespace outrider::explorer

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "world/grid.hpp"
@@ -13,6 +14,7 @@ struct KnownMapPlanOptions {
   double fraction = 0.95;   ///< of the reachable area that has to be seen
   int evaluations = 20000;  ///< of changed plans in the local search
   std::uint64_t seed = 1;
+  std::vector<std::string> begin_with{"scout", "daa", "ea"};  ///< coordinators whose runs it may begin with
 };
 
 /// How a team could explore if it knew the map: the `oracle` of the benches.
@@ -22,10 +24,11 @@ struct KnownMapPlan {
 };
 
 /// A plan for the least time to see `fraction` of the reachable area of `truth`, by local search: tours over a lattice
-/// of way-points, begun greedily by newly seen area per time, then changed at random (a way-point moved, replaced, put
-/// in, left out; a stretch reversed; tails of two robots exchanged) under simulated annealing. Robots sense in every
-/// cell that they enter, by the simulator's rule, and drive shortest safe paths at their speed; they do not get in each
-/// other's way. No better than the optimum and no worse than greedy: a reference, not a bound. Deterministic.
+/// of way-points, begun greedily by newly seen area per time or with the tours of a real run, then changed at random (a
+/// way-point moved, replaced, put in, left out; a stretch reversed; tails of two robots exchanged) under simulated
+/// annealing. Robots sense in every cell that they enter, by the simulator's rule, and drive shortest safe paths at
+/// their speed; they do not get in each other's way. No better than the optimum and no worse than its beginnings: a
+/// reference, not a bound. Deterministic.
 KnownMapPlan plan_with_known_map(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
                                  const KnownMapPlanOptions& options);
 

@@ -21,15 +21,15 @@ TEST(KnownMapPlan, DrivesACorridorToItsEnd) {
   EXPECT_DOUBLE_EQ(*plan.time_s, 55.0 / 2.0);  // the last cell is in view five cells before it
 }
 
-TEST(KnownMapPlan, SearchImprovesOnGreedAndStaysAboveTheBound) {
+TEST(KnownMapPlan, SearchImprovesOnItsBeginningAndStaysAboveTheBound) {
   OccupancyGrid map({1.0, {0.0, 0.0}, 50, 40}, CellState::kFree);
   for (int y = 0; y < 30; ++y) map[Cell{25, y}] = CellState::kOccupied;
   const std::vector<RobotSpec> team{robot_at(map, {5, 5}, 2.0, 4.0), robot_at(map, {7, 5}, 1.0, 3.0)};
   const auto time = [&](int evaluations) {
     return plan_with_known_map(map, team, {.evaluations = evaluations}).time_s;
   };
-  const double greedy = time(0), searched = time(4000);
-  EXPECT_LT(searched, 0.95 * greedy);
+  const double begun = time(0), searched = time(4000);
+  EXPECT_LT(searched, begun);
   EXPECT_GE(searched, lower_bound_s(map, team, 0.95, false));
   EXPECT_EQ(searched, time(4000));  // deterministic
 }
