@@ -2,35 +2,9 @@
 
 #include <algorithm>
 
+#include "link/codec.hpp"
+
 namespace outrider::link {
-namespace {
-
-constexpr std::size_t kHeader = 16;  // type, sender, sequence
-constexpr std::size_t kPose = 24, kCell = 8, kRound = 8;
-
-struct SizeOf {
-  std::size_t operator()(const StatusMessage& m) const { return kHeader + kPose + 2 * kCell + 40 + m.way.size() * kCell; }
-  std::size_t operator()(const MapUpdate& m) const { return kHeader + m.runs.size() * 6; }
-  std::size_t operator()(const MapDigest& m) const { return kHeader + 4 + m.marks.size() * 8; }
-  std::size_t operator()(const TileRequest& m) const { return kHeader + m.tiles.size() * 4; }
-  std::size_t operator()(const MapTile& m) const { return kHeader + 4 + m.cells.size(); }
-  std::size_t operator()(const RoundOpen&) const { return kHeader + kRound; }
-  std::size_t operator()(const BidSheet& m) const { return kHeader + kRound + kPose + 34 + m.entries.size() * 24; }
-  std::size_t operator()(const Awards& m) const {
-    return kHeader + kRound + m.bidders.size() * 4 + m.awards.size() * 28;
-  }
-  std::size_t operator()(const ClaimSheet& m) const {
-    return kHeader + kRound + 14 + m.claims.size() * 8 + m.prices.size() * 8;
-  }
-  std::size_t operator()(const TaskOffer&) const { return kHeader + kRound + 24; }
-  std::size_t operator()(const TaskAnswer&) const { return kHeader + kRound + 9; }
-  std::size_t operator()(const PlanSheet& m) const { return kHeader + kRound + 25 + m.owners.size() * 4; }
-};
-
-}  // namespace
-
-std::size_t encoded_size(const Message& message) { return std::visit(SizeOf{}, message); }
-
 struct Ether::Endpoint : Bus {
   Endpoint(Ether& ether, RobotId robot) : ether_(ether), robot_(robot) {}
 

@@ -1,5 +1,7 @@
 #include "link/ether.hpp"
 
+#include "link/codec.hpp"
+
 #include <gtest/gtest.h>
 
 namespace outrider::link {
