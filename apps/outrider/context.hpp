@@ -40,6 +40,9 @@ CLI::Validator number_in(double low, double high);
 
 // One file a verb (those that need the map room: maps_module.hpp). Each adds its subcommand; the callback runs it and sets ctx.exit_code.
 void add_explore(CLI::App& app, Context& ctx);
+void add_robot(CLI::App& app, Context& ctx);
+void add_team(CLI::App& app, Context& ctx);
+void add_watch(CLI::App& app, Context& ctx);
 void add_report(CLI::App& app, Context& ctx);
 void add_bench(CLI::App& app, Context& ctx);
 void add_sweep(CLI::App& app, Context& ctx);

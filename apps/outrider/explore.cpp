@@ -22,7 +22,6 @@
 #include "world_source.hpp"
 
 namespace outrider::app {
-namespace {
 
 using explorer::MissionResult;
 using explorer::MissionSettings;
@@ -48,6 +47,8 @@ MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, co
   return settings;
 }
 
+namespace {
+
 Json configuration(const ExploreOptions& o, const MissionSettings& s) {
   return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms}, {"sensing", o.sensing},
           {"localization", o.localization}, {"starts", o.starts}, {"until", o.until}, {"max_time_s", o.max_time},
@@ -65,6 +66,8 @@ Json timing(double wall_s, MissionResult& result) {
           {"decision_ms", {{"p50", quantile(0.5)}, {"p95", quantile(0.95)}, {"max", quantile(1.0)}}},
           {"realtime_factor", wall_s > 0.0 ? result.mission_time_s / wall_s : 0.0}};
 }
+
+}  // namespace
 
 Json world_json(const sim::World& world) {
   const auto& g = world.map.geometry();
@@ -90,6 +93,8 @@ void print_summary(const report::RunRecord& record, const Json& result, const Co
   fmt::print("{}\n", ctx.out.empty() ? std::string() : fmt::format("; report: {}", (ctx.out / "report.html").string()));
 }
 
+namespace {
+
 report::RunRecord run_shown(const ExploreOptions& o, const Context& ctx) {
   Progress progress("exploring", ctx.quiet);
   return run_exploration(o, open_exploration_world(o), ctx.seed, true, [&](double now_s, double done) {
@@ -111,7 +116,8 @@ void explore(const ExploreOptions& o, Context& ctx) {
   ctx.exit_code = exit_code(document["result"]);
 }
 
-/// The team on its starts.
+}  // namespace
+
 std::vector<RobotSpec> team_of(const ExploreOptions& o, const sim::World& world, std::uint64_t seed) {
   TeamFile team = o.team_file.empty() ? usual_team(world, o.robots) : read_team_file(o.team_file);
   if (o.starts == "world") return place_team(world, std::move(team));
@@ -121,8 +127,6 @@ std::vector<RobotSpec> team_of(const ExploreOptions& o, const sim::World& world,
   drawn.starts = sim::random_starts(world, radii, seed);
   return place_team(drawn, std::move(team));
 }
-
-}  // namespace
 
 void check_exploration(const ExploreOptions& o, const sim::World& world) {
   constexpr std::uint64_t kAnySeed = 1;
@@ -160,7 +164,7 @@ report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& wor
   return record;
 }
 
-void add_explore_options(CLI::App& verb, ExploreOptions& o) {
+void add_team_options(CLI::App& verb, ExploreOptions& o) {
   verb.add_option("WORLD", o.world, "name from 'outrider list worlds', or a map: ROS .yaml, image, .gridmap[.gz], "
                    "MovingAI .map, ASCII .txt")->capture_default_str();
   verb.add_option("--resolution", o.resolution, "edge of a cell for images, .map and .txt [m]")
@@ -177,23 +181,27 @@ void add_explore_options(CLI::App& verb, ExploreOptions& o) {
                    "break:T0-T1[:A+B], split:T0-T1:A+B; comma-separated")->capture_default_str()->type_name("SPEC");
   verb.add_option("--sensing", o.sensing, "disc: every cell in range and sight; lidar: simulated scans")
       ->check(CLI::IsMember({"disc", "lidar"}))->capture_default_str()->type_name("KIND");
-  verb.add_option("--localization", o.localization, "perfect (odometry and slam are to come)")
-      ->check(CLI::IsMember({"perfect"}))->capture_default_str()->type_name("KIND");
   verb.add_option("--range-noise", o.range_noise, "standard deviation of a lidar range [m]")
       ->check(number_in(0.0, 10.0))->capture_default_str()->type_name("M");
-  verb.add_option("--until", o.until, "stop when this fraction of the reachable area has been seen")
-      ->check(number_in(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
   verb.add_option("--max-time", o.max_time, "stop after this much simulated time [s] (default: a generous limit)")
       ->check(number_in(1e-3, 1e9))->type_name("S");
   verb.add_flag("--return-home", o.return_home, "drive back to the starts in the end");
-  verb.add_option("--fault", o.fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR, deaf:ROBOT@T0-T1; "
-                   "comma-separated")
-      ->type_name("SPEC");
   verb.add_flag("--octomap", o.octomap, "also write map.bt (OctoMap)");
   verb.add_option_function<std::vector<std::string>>("--bids", [&o](const auto& items) {
         for (const std::string& item : items) auction::set_bid_options(o.bids, item);
       }, "parameters and readings of ia, ea, daa, ta: rho=X, gamma=X, ...; comma-separated; all keys below")
       ->delimiter(',')->type_name("KEY=VALUE");
+}
+
+void add_explore_options(CLI::App& verb, ExploreOptions& o) {
+  add_team_options(verb, o);
+  verb.add_option("--localization", o.localization, "perfect (odometry and slam are to come)")
+      ->check(CLI::IsMember({"perfect"}))->capture_default_str()->type_name("KIND");
+  verb.add_option("--until", o.until, "stop when this fraction of the reachable area has been seen")
+      ->check(number_in(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
+  verb.add_option("--fault", o.fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR, deaf:ROBOT@T0-T1; "
+                   "comma-separated")
+      ->type_name("SPEC");
 }
 
 void add_explore(CLI::App& app, Context& ctx) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "auction/bid_rules.hpp"
+#include "context.hpp"
 #include "explorer/mission.hpp"
 #include "report/run_record.hpp"
 #include "sim/world.hpp"
@@ -29,6 +30,17 @@ struct ExploreOptions {
 
 /// Adds these flags, and WORLD, to a command line.
 void add_explore_options(CLI::App& verb, ExploreOptions& o);
+/// Adds those of them that live robots know, too: world, team, sensing, coordinator and its parameters.
+void add_team_options(CLI::App& verb, ExploreOptions& o);
+
+/// The team that the flags name, on its starts in `world`. Throws InputError.
+std::vector<RobotSpec> team_of(const ExploreOptions& o, const sim::World& world, std::uint64_t seed);
+/// What the flags mean for a team. Throws InputError.
+explorer::MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, const std::vector<RobotSpec>& team);
+report::Json world_json(const sim::World& world);
+/// What a finished run means for the shell, and for a person.
+int exit_code(const report::Json& result);
+void print_summary(const report::RunRecord& record, const report::Json& result, const Context& ctx);
 
 /// The world as the simulator takes it: what is unknown in a map is solid. Throws InputError.
 sim::World open_exploration_world(const ExploreOptions& o);

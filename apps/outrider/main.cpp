@@ -83,6 +83,9 @@ int run(int argc, char** argv) {
              "130 interrupted.");
   add_explore(app, ctx);
   add_module_verbs(app, ctx);
+  add_robot(app, ctx);
+  add_team(app, ctx);
+  add_watch(app, ctx);
   add_report(app, ctx);
   add_bench(app, ctx);
   add_sweep(app, ctx);

@@ -175,4 +175,9 @@ report::RunRecord mission_record(explorer::MissionResult&& result, const explore
   return record;
 }
 
+report::Json event_json(double t, const explorer::Event& event, const GridGeometry& geometry,
+                        const std::vector<report::RobotRecord>& robots) {
+  return EventWriter(geometry, robots)(t, event);
+}
+
 }  // namespace outrider::app

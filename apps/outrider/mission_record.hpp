@@ -9,4 +9,8 @@ namespace outrider::app {
 report::RunRecord mission_record(explorer::MissionResult&& result, const explorer::MissionSettings& settings,
                                  const OccupancyGrid& truth);
 
+/// A line of events.jsonl. `robots` names them, in team order.
+report::Json event_json(double t, const explorer::Event& event, const GridGeometry& geometry,
+                        const std::vector<report::RobotRecord>& robots);
+
 }  // namespace outrider::app

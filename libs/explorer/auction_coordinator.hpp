@@ -14,10 +14,18 @@ using Allocate = std::function<std::vector<Award>(const auction::BidTable&, cons
 /// Which tasks a robot bids for.
 using BidFor = std::function<TaskGrain(const Situation&)>;
 
-/// The auction cycle of Dai 2014, Fig. 1, as messages. The robot that finishes first opens a round (RoundOpen);
-/// everybody who hears it answers with all its bids (BidSheet), busy robots too: unfinished tasks are auctioned again.
-/// The opener closes the round when all expected sheets are in, or after 0.5 s, and broadcasts the awards. Of two
-/// rounds open at once the one of the lower robot stands. docs/protocol.md has the state chart.
+/// How long a task stays with its winner without a sign of life from it [s].
+inline constexpr double kLease = 3.0;
+
+/// The auction cycle of Dai 2014, Fig. 1, as messages that may be lost, late, doubled or out of order. The robot that
+/// finishes first sells: it opens a round (RoundOpen, repeated until all sheets are in, 1 s at most); everybody who hears
+/// it answers with all its bids (BidSheet, in parts), busy robots too: unfinished tasks are auctioned again. The seller
+/// then broadcasts the awards and repeats them until all bidders follow them or something newer. Of two rounds open at
+/// once the one of the lower robot stands; of two awards the newer epoch does, whatever the order of arrival.
+///
+/// A status renews its sender's lease on its goal. The task of a silent robot is not for sale while its lease lasts, and
+/// is sold again afterwards. Of two robots with the same frontier that hear each other the one with the older award lets
+/// go. Under the ideal radio none of this shows once robots have heard of each other. docs/protocol.md has the whole story.
 /// With Rebid::kFinisher robots under way are asked, but keep their tasks.
 std::unique_ptr<Coordinator> make_auction_coordinator(BidFor bid_for, Allocate allocate,
                                                       auction::Rebid rebid = auction::Rebid::kEverybody);

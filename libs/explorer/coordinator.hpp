@@ -69,6 +69,7 @@ struct Decision {
   Verdict verdict = Verdict::kKeep;
   std::optional<Task> task;
   double value = 0.0;                  ///< of the winning bid, in the rule's own unit
+  std::optional<Epoch> epoch;          ///< of the award that is followed from now on; team-mates hear of it
   std::vector<Message> send;
   std::vector<AuctionRecord> records;  ///< rounds that this robot closed
 };

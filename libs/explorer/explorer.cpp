@@ -94,6 +94,10 @@ void Explorer::send_status(double now_s) {
   status.priority = priority_;
   status.asks = asks_;
   status.map_hash = map_.hash();
+  status.epoch = epoch_;
+  for (const Teammate& mate : team_)
+    if (now_s <= mate.heard_s + settings_.silent_after && status.heard.size() < StatusMessage::kMostHeard)
+      status.heard.push_back(mate.robot);
   bus_.send(std::move(status));
   status_news_ = false;
   status_due_s_ = now_s + settings_.status_period;
@@ -117,7 +121,7 @@ void Explorer::hear(const link::Delivery& delivery, double now_s) {
                                  [](const Teammate& t, RobotId robot) { return t.robot < robot; });
     if (mate == team_.end() || mate->robot != status->robot) mate = team_.insert(mate, Teammate{status->robot, {}, 0.0});
     *mate = Teammate{status->robot, *status, now_s};
-  } else if (!is_map_traffic(message)) {
+  } else if (is_auction_traffic(message)) {
     inbox_.push_back(delivery);
   }
 }
@@ -203,6 +207,7 @@ void Explorer::run_coordinator(double now_s) {
 
 void Explorer::apply(const Decision& decision, double now_s) {
   using Verdict = Decision::Verdict;
+  epoch_ = decision.epoch.value_or(epoch_);
   if (decision.verdict == Verdict::kGo) {
     if (phase_ == Phase::kDone) phase_ = Phase::kExploring;
     if (task_ == decision.task) return;

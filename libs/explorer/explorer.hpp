@@ -28,6 +28,9 @@ class ScanMapper {
   virtual const OccupancyGrid& states() const = 0;
 };
 
+/// Makes the scan mapper of a robot that scans.
+using MapperFactory = std::function<std::unique_ptr<ScanMapper>(const GridGeometry&, const RobotSpec&)>;
+
 struct ExplorerSettings {
   double status_period = 0.5;    ///< [s] between status messages when nothing changes
   double silent_after = 2.0;     ///< a team-mate not heard for this long does not bid [s]
@@ -85,6 +88,9 @@ class Explorer {
   /// Cells that the own sensor saw for the first time during the last sense().
   const std::vector<std::uint32_t>& observed() const { return observed_; }
   const Pose2& pose() const { return pose_; }
+  std::uint64_t map_hash() const { return map_.hash(); }
+  /// Everybody ever heard, as last heard, by robot.
+  const std::vector<Teammate>& team() const { return team_; }
   std::optional<Task> task() const { return task_; }
   /// Frontiers of `map` (the team's) that are left, as this robot sees them.
   std::vector<Left> left(const OccupancyGrid& map) const { return board_.left(map); }
@@ -158,6 +164,7 @@ class Explorer {
   std::uint32_t seq_ = 0;
 
   std::optional<Task> task_;
+  Epoch epoch_;                        // of the award that is followed
   std::vector<Cell> way_;              // from the current cell on, what is left to drive
   double map_news_s_ = 0.0;            // when the map last changed
   double refused_s_ = -1e9;            // when the coordinator last had nothing for us

@@ -25,9 +25,6 @@ struct Fault {
   double factor = 1.0;   ///< of kSlow
 };
 
-/// Makes the scan mapper of a robot in lidar runs.
-using MapperFactory = std::function<std::unique_ptr<ScanMapper>(const GridGeometry&, const RobotSpec&)>;
-
 struct MissionSettings {
   std::string coordinator = "daa";
   CoordinatorSettings coordination;

@@ -9,8 +9,6 @@
 namespace outrider::link {
 namespace {
 
-constexpr std::size_t kMostEntries = 60, kMostBidders = 40;  // what fits into a frame
-
 std::uint64_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
   std::uint64_t value = 0;
   for (std::size_t k = 0; k < size; ++k) value = value << 8U | bytes[at + k];
@@ -80,15 +78,16 @@ const std::array<Kind, std::variant_size_v<Message>>& kinds() {
   using namespace outrider_wire;
   static const std::array<Kind, std::variant_size_v<Message>> table{
       kind<status_t>("OUTRIDER_STATUS",
-                     form<status_t, cell_t>(StatusMessage::kMaxWay)),
+                     form<status_t, cell_t, std::int16_t>(StatusMessage::kMaxWay, StatusMessage::kMostHeard)),
       kind<map_update_t>("OUTRIDER_UPDATE", form<map_update_t, cell_run_t>(MapUpdate::kMostRuns)),
       kind<map_digest_t>("OUTRIDER_DIGEST", form<map_digest_t, tile_mark_t>(MapDigest::kMostMarks)),
       kind<tile_request_t>("OUTRIDER_REQUEST", form<tile_request_t, std::int32_t>(TileRequest::kMostTiles)),
-      kind<map_tile_t>("OUTRIDER_TILE", form<map_tile_t>(1024)),
-      kind<round_open_t>("OUTRIDER_OPEN", form<round_open_t>()),
-      kind<bid_sheet_t>("OUTRIDER_BIDS", form<bid_sheet_t, bid_entry_t>(kMostEntries)),
+      kind<map_tile_t>("OUTRIDER_TILE", form<map_tile_t>(MapTile::kMostCells)),
+      kind<round_open_t>("OUTRIDER_OPEN", form<round_open_t, std::int16_t>(RoundOpen::kMostHeard)),
+      kind<bid_sheet_t>("OUTRIDER_BIDS", form<bid_sheet_t, bid_entry_t>(BidSheet::kMostEntries)),
       kind<awards_t>("OUTRIDER_AWARDS",
-                     form<awards_t, std::int16_t, award_t>(kMostBidders, kMostBidders)),
+                     form<awards_t, std::int16_t, award_t>(Awards::kMostBidders, Awards::kMostBidders)),
+      kind<introduction_t>("OUTRIDER_HELLO", form<introduction_t>(Introduction::kMostName, Introduction::kMostName)),
       kind<claim_sheet_t>("OUTRIDER_CLAIMS",
                           form<claim_sheet_t, claim_t, double>(ClaimSheet::kMostClaims, ClaimSheet::kMostClaims)),
       kind<task_offer_t>("OUTRIDER_OFFER", form<task_offer_t>()),
@@ -106,18 +105,19 @@ const Kind* kind_on(std::string_view channel) {
 /// Elements of the variable arrays of a message.
 struct Counts {
   using Pair = std::array<std::size_t, 2>;
-  Pair operator()(const StatusMessage& m) const { return {m.way.size(), 0}; }
+  Pair operator()(const StatusMessage& m) const { return {m.way.size(), m.heard.size()}; }
   Pair operator()(const MapUpdate& m) const { return {m.runs.size(), 0}; }
   Pair operator()(const MapDigest& m) const { return {m.marks.size(), 0}; }
   Pair operator()(const TileRequest& m) const { return {m.tiles.size(), 0}; }
   Pair operator()(const MapTile& m) const { return {m.cells.size(), 0}; }
-  Pair operator()(const RoundOpen&) const { return {0, 0}; }
+  Pair operator()(const RoundOpen& m) const { return {m.heard.size(), 0}; }
   Pair operator()(const BidSheet& m) const { return {m.entries.size(), 0}; }
   Pair operator()(const Awards& m) const { return {m.bidders.size(), m.awards.size()}; }
   Pair operator()(const ClaimSheet& m) const { return {m.claims.size(), m.prices.size()}; }
   Pair operator()(const TaskOffer&) const { return {0, 0}; }
   Pair operator()(const TaskAnswer&) const { return {0, 0}; }
   Pair operator()(const PlanSheet& m) const { return {m.owners.size(), 0}; }
+  Pair operator()(const Introduction& m) const { return {m.spec.name.size(), m.coordinator.size()}; }
 };
 
 std::size_t payload_size(const Message& message) {

@@ -23,7 +23,7 @@ struct Envelope {
   friend bool operator==(const Envelope&, const Envelope&) = default;
 };
 
-/// Who only listens and asks for maps (a live page, a logger) has this number; it is in no team.
+/// Who only listens and asks for maps (outrider watch) has this number; it is in no team.
 inline constexpr RobotId kObserver = 32000;
 
 /// Where the 16 bytes of the MAC lie in a payload: behind fingerprint, utime, boot, sequence, run and robot.

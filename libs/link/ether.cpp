@@ -5,6 +5,7 @@
 #include "link/codec.hpp"
 
 namespace outrider::link {
+
 struct Ether::Endpoint : Bus {
   Endpoint(Ether& ether, RobotId robot) : ether_(ether), robot_(robot) {}
 

@@ -11,9 +11,6 @@
 
 namespace outrider::link {
 
-/// Decides the fate of one copy of a message: the delay until it arrives [s], or nothing when it is lost.
-using LinkModel = std::function<std::optional<double>(RobotId from, RobotId to, double now_s)>;
-
 /// Everybody hears everybody at once.
 inline LinkModel ideal_link() {
   return [](RobotId, RobotId, double) { return std::optional<double>(0.0); };
@@ -24,9 +21,6 @@ struct RadioCounters {
   std::uint64_t delivered = 0;  ///< copies that reached a receiver
   std::uint64_t bytes = 0;      ///< of the messages sent, by encoded_size()
 };
-
-/// Size of a message on the wire [bytes]; the in-memory bus counts what a real one would carry.
-std::size_t encoded_size(const Message& message);
 
 /// Connects `robots` endpoints in one process. Deterministic: deliveries are ordered by (arrival time, send order).
 /// Not thread-safe; must outlive its endpoints.

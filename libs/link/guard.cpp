@@ -82,9 +82,10 @@ bool Guard::in_map(const Message& message) const {
   const auto member = [&](RobotId robot) { return robot < settings_.robots; };
   const auto all = [](const auto& list, auto&& good) { return std::all_of(list.begin(), list.end(), good); };
   if (const auto* m = std::get_if<StatusMessage>(&message))
-    return inside_if(m->goal) && all(m->way, inside) && member(m->asks.value_or(0));
+    return inside_if(m->goal) && all(m->way, inside) && all(m->heard, member) && member(m->asks.value_or(0));
   if (const auto* m = std::get_if<MapUpdate>(&message))
     return all(m->runs, [&](const CellRun& run) { return run.index + std::size_t{run.length} <= g.size(); });
+  if (const auto* m = std::get_if<RoundOpen>(&message)) return all(m->heard, member);
   if (const auto* m = std::get_if<BidSheet>(&message))
     return member(m->round.opener) && inside_if(m->goal) &&
            all(m->entries, [&](const BidEntry& e) { return inside(e.task) && inside(e.stand); });
@@ -94,6 +95,7 @@ bool Guard::in_map(const Message& message) const {
   if (const auto* m = std::get_if<ClaimSheet>(&message))
     return member(m->round.opener) && all(m->claims, [&](const Claim& claim) { return member(claim.owner); });
   if (const auto* m = std::get_if<PlanSheet>(&message)) return member(m->round.opener) && all(m->owners, member);
+  if (const auto* m = std::get_if<Introduction>(&message)) return m->geometry == g;
   return true;
 }
 

@@ -39,6 +39,13 @@ bool sane_goal(const Wire& wire) {
   return truth(wire.has_goal) && on_grid(wire.goal) && (wire.has_goal || (wire.goal.x == 0 && wire.goal.y == 0));
 }
 
+/// A name is shown to people and names files: [A-Za-z0-9_-] only.
+bool plain(const std::vector<std::uint8_t>& text) {
+  return all(text, [](std::uint8_t c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
+  });
+}
+
 }  // namespace
 
 status_t to_wire(const StatusMessage& m) {
@@ -50,18 +57,22 @@ status_t to_wire(const StatusMessage& m) {
   w.explored_rate = m.explored_rate;
   w.map_hash = std::bit_cast<std::int64_t>(m.map_hash);
   w.seq = i32(m.seq);
+  w.epoch = i32(m.epoch.count);
+  w.seller = i16(m.epoch.seller);
   w.priority = m.priority;
   w.asks = i16(m.asks.value_or(-1));
   w.done = m.done;
   put_goal(m.goal, w);
   w.n_way = i16(m.way.size());
   w.way = each<cell_t>(m.way, [](Cell c) { return cell(c); });
+  w.n_heard = i16(m.heard.size());
+  w.heard = robots(m.heard);
   return w;
 }
 
 std::optional<Message> from_wire(const status_t& w, RobotId sender) {
   if (!sane(w.pose) || !size(w.speed) || !size(w.range) || !size(w.radius) || !size(w.explored_rate)) return {};
-  if (w.asks < -1 || !truth(w.done) || !sane_goal(w) || !all(w.way, on_grid)) return {};
+  if (w.seller < 0 || w.asks < -1 || !truth(w.done) || !sane_goal(w) || !all(w.way, on_grid) || !robots(w.heard)) return {};
   StatusMessage m{.robot = sender, .seq = u32(w.seq), .pose = pose(w.pose)};
   m.goal = goal(w);
   m.way = each<Cell>(w.way, [](const cell_t& c) { return cell(c); });
@@ -73,6 +84,8 @@ std::optional<Message> from_wire(const status_t& w, RobotId sender) {
   m.priority = w.priority;
   if (w.asks >= 0) m.asks = w.asks;
   m.map_hash = std::bit_cast<std::uint64_t>(w.map_hash);
+  m.epoch = {u32(w.epoch), w.seller};
+  m.heard = {w.heard.begin(), w.heard.end()};
   return m;
 }
 
@@ -142,17 +155,23 @@ std::optional<Message> from_wire(const map_tile_t& w, RobotId sender) { return M
 round_open_t to_wire(const RoundOpen& m) {
   round_open_t w{};
   w.count = i32(m.round.count);
+  w.n_heard = i16(m.heard.size());
+  w.heard = robots(m.heard);
   return w;
 }
 
 std::optional<Message> from_wire(const round_open_t& w, RobotId sender) {
-  return RoundOpen{{sender, u32(w.count)}};
+  if (!robots(w.heard)) return {};
+  return RoundOpen{{sender, u32(w.count)}, {w.heard.begin(), w.heard.end()}};
 }
 
 bid_sheet_t to_wire(const BidSheet& m) {
   bid_sheet_t w{};
   w.opener = i16(m.round.opener);
   w.count = i32(m.round.count);
+  w.epoch = i32(m.epoch);
+  w.part = i16(m.part);
+  w.parts = i16(m.parts);
   put(m.pose, w.pose);
   w.speed = m.speed;
   w.range = m.range;
@@ -172,7 +191,7 @@ bid_sheet_t to_wire(const BidSheet& m) {
 }
 
 std::optional<Message> from_wire(const bid_sheet_t& w, RobotId sender) {
-  if (w.opener < 0) return {};
+  if (w.opener < 0 || w.parts < 1 || w.parts > BidSheet::kMostParts || w.part < 0 || w.part >= w.parts) return {};
   if (!sane(w.pose) || !size(w.speed) || !size(w.range) || !size(w.explored_rate)) return {};
   if (w.speed == 0.0 || w.range == 0.0 || !truth(w.busy) || !sane_goal(w)) return {};  // bids are divided by these
   const bool good = all(w.entries, [](const bid_entry_t& e) {
@@ -183,12 +202,16 @@ std::optional<Message> from_wire(const bid_sheet_t& w, RobotId sender) {
   m.entries = each<BidEntry>(w.entries, [](const bid_entry_t& e) {
     return BidEntry{cell(e.task), cell(e.stand), e.gain, e.distance};
   });
+  m.epoch = u32(w.epoch);
+  m.part = w.part;
+  m.parts = w.parts;
   return m;
 }
 
 awards_t to_wire(const Awards& m) {
   awards_t w{};
   w.count = i32(m.round.count);
+  w.epoch = i32(m.epoch);
   w.n_bidders = i16(m.bidders.size());
   w.n_awards = i16(m.awards.size());
   w.bidders = robots(m.bidders);
@@ -208,10 +231,49 @@ std::optional<Message> from_wire(const awards_t& w, RobotId sender) {
     return a.robot >= 0 && on_grid(a.task) && on_grid(a.stand) && std::isfinite(a.value);
   });
   if (!good || !robots(w.bidders)) return {};
-  Awards m{{sender, u32(w.count)}, {w.bidders.begin(), w.bidders.end()}, {}};
+  Awards m{{sender, u32(w.count)}, u32(w.epoch), {w.bidders.begin(), w.bidders.end()}, {}};
   m.awards = each<Award>(w.awards, [](const award_t& a) {
     return Award{a.robot, cell(a.task), cell(a.stand), a.value};
   });
+  return m;
+}
+
+introduction_t to_wire(const Introduction& m) {
+  introduction_t w{};
+  w.resolution = m.geometry.resolution;
+  w.origin[0] = m.geometry.origin.x;
+  w.origin[1] = m.geometry.origin.y;
+  w.width = m.geometry.width;
+  w.height = m.geometry.height;
+  put(m.spec.start, w.start);
+  w.speed = m.spec.speed;
+  w.range = m.spec.range;
+  w.fov = m.spec.fov;
+  w.beams = m.spec.beams;
+  w.radius = m.spec.radius;
+  w.time_scale = m.time_scale;
+  w.team = i16(m.team);
+  w.n_name = i16(m.spec.name.size());
+  w.n_coordinator = i16(m.coordinator.size());
+  w.name.assign(m.spec.name.begin(), m.spec.name.end());
+  w.coordinator.assign(m.coordinator.begin(), m.coordinator.end());
+  return w;
+}
+
+std::optional<Message> from_wire(const introduction_t& w, RobotId sender) {
+  constexpr int kMostSide = 32767;  // cells travel as int16
+  if (!size(w.resolution) || w.resolution < 1e-3 || !sane(w.origin[0]) || !sane(w.origin[1])) return {};
+  if (w.width < 1 || w.width > kMostSide || w.height < 1 || w.height > kMostSide || w.team < 1) return {};
+  if (!sane(w.start) || !size(w.speed) || !size(w.range) || !size(w.fov) || !size(w.radius) || w.beams < 0) return {};
+  if (!size(w.time_scale) || w.time_scale < 1e-3) return {};
+  if (w.name.empty() || !plain(w.name) || !plain(w.coordinator)) return {};
+  Introduction m;
+  m.robot = sender;
+  m.spec = {{w.name.begin(), w.name.end()}, pose(w.start), w.speed, w.range, w.fov, w.beams, w.radius};
+  m.geometry = {w.resolution, {w.origin[0], w.origin[1]}, w.width, w.height};
+  m.coordinator = {w.coordinator.begin(), w.coordinator.end()};
+  m.team = w.team;
+  m.time_scale = w.time_scale;
   return m;
 }
 

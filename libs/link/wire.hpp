@@ -7,6 +7,7 @@
 #include "outrider_wire/awards_t.hpp"
 #include "outrider_wire/bid_sheet_t.hpp"
 #include "outrider_wire/claim_sheet_t.hpp"
+#include "outrider_wire/introduction_t.hpp"
 #include "outrider_wire/map_digest_t.hpp"
 #include "outrider_wire/map_tile_t.hpp"
 #include "outrider_wire/map_update_t.hpp"
@@ -28,6 +29,7 @@ outrider_wire::map_tile_t to_wire(const MapTile& m);
 outrider_wire::round_open_t to_wire(const RoundOpen& m);
 outrider_wire::bid_sheet_t to_wire(const BidSheet& m);
 outrider_wire::awards_t to_wire(const Awards& m);
+outrider_wire::introduction_t to_wire(const Introduction& m);
 outrider_wire::claim_sheet_t to_wire(const ClaimSheet& m);
 outrider_wire::task_offer_t to_wire(const TaskOffer& m);
 outrider_wire::task_answer_t to_wire(const TaskAnswer& m);
@@ -41,6 +43,7 @@ std::optional<Message> from_wire(const outrider_wire::map_tile_t& w, RobotId sen
 std::optional<Message> from_wire(const outrider_wire::round_open_t& w, RobotId sender);
 std::optional<Message> from_wire(const outrider_wire::bid_sheet_t& w, RobotId sender);
 std::optional<Message> from_wire(const outrider_wire::awards_t& w, RobotId sender);
+std::optional<Message> from_wire(const outrider_wire::introduction_t& w, RobotId sender);
 std::optional<Message> from_wire(const outrider_wire::claim_sheet_t& w, RobotId sender);
 std::optional<Message> from_wire(const outrider_wire::task_offer_t& w, RobotId sender);
 std::optional<Message> from_wire(const outrider_wire::task_answer_t& w, RobotId sender);

@@ -16,9 +16,9 @@ find_file(CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js NO_DEFAULT_
           DOC "chart.js 3.9, inlined into reports (Debian package libjs-chart.js)" REQUIRED)
 set(dir "${CMAKE_CURRENT_LIST_DIR}/assets")
 set(files "${dir}/report.html" "${dir}/comparison.html" "${dir}/page.css" "${dir}/report.js" "${dir}/comparison.js"
-          "${dir}/charts.js" "${dir}/map_view.js" "${CHART_JS}")
+          "${dir}/charts.js" "${dir}/map_view.js" "${dir}/watch.html" "${dir}/watch.js" "${CHART_JS}")
 set(functions report_template comparison_template style_sheet report_script comparison_script chart_script
-              map_script chart_library)
+              map_script watch_template watch_script chart_library)
 foreach(function file IN ZIP_LISTS functions files)
   list(APPEND assets "${function}=${file}")
 endforeach()

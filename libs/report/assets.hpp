@@ -6,6 +6,8 @@
 namespace outrider::report {
 
 std::string_view report_template();      ///< assets/report.html
+std::string_view watch_template();       ///< assets/watch.html
+std::string_view watch_script();         ///< assets/watch.js
 std::string_view comparison_template();  ///< assets/comparison.html
 std::string_view style_sheet();          ///< assets/page.css
 std::string_view report_script();        ///< assets/report.js

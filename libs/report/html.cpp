@@ -176,6 +176,14 @@ std::string fill_template(std::string_view page, const std::vector<std::pair<std
   }
 }
 
+std::string watch_html() {
+  return fill_template(watch_template(), {{"style", std::string(style_sheet())},
+                                          {"chart_library", std::string(chart_library())},
+                                          {"chart_script", std::string(chart_script())},
+                                          {"map_script", std::string(map_script())},
+                                          {"script", std::string(watch_script())}});
+}
+
 std::string report_html(const RunRecord& record) {
   const Json run = run_json(record);
   return fill_template(report_template(), {{"title", escape_html(title(run))},

@@ -11,6 +11,9 @@ namespace outrider::report {
 
 std::string report_html(const RunRecord& record);
 
+/// The page of `outrider watch`: it draws what its server sends as events (docs/protocol.md).
+std::string watch_html();
+
 /// For text between tags and inside quoted attributes.
 std::string escape_html(std::string_view text);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -216,6 +217,12 @@ void Simulator::kill(RobotId robot) {
   SimulatedBody& body = *impl_->bodies.at(static_cast<std::size_t>(robot));
   body.follow({});
   body.alive = false;
+}
+
+void Simulator::place(RobotId robot, const Pose2& pose) {
+  SimulatedBody& body = *impl_->bodies.at(static_cast<std::size_t>(robot));
+  assert(!body.alive);
+  body.pose = pose;
 }
 
 void Simulator::revive(RobotId robot) { impl_->bodies.at(static_cast<std::size_t>(robot))->alive = true; }

@@ -60,6 +60,8 @@ class Simulator {
   /// A killed robot neither moves nor senses nor takes commands, and forgets its path; it stays where it is, an
   /// obstacle that its team-mates see as a team-mate.
   void kill(RobotId robot);
+  /// Puts a killed robot where it really is: another process drives it (sim/arena.hpp).
+  void place(RobotId robot, const Pose2& pose);
   /// A revived robot stands still until it is told where to go.
   void revive(RobotId robot);
   bool alive(RobotId robot) const;

@@ -12,6 +12,16 @@
 
 namespace outrider {
 
+/// Orders awards: the greater count, then the lower seller, is the newer. Count 0: no award yet.
+struct Epoch {
+  std::uint32_t count = 0;
+  RobotId seller = 0;
+  bool newer_than(const Epoch& other) const {
+    return count != other.count ? count > other.count : count > 0 && seller < other.seller;
+  }
+  friend bool operator==(const Epoch&, const Epoch&) = default;
+};
+
 /// Who is where and what it is up to. Sent at a steady rate and on every change of goal.
 struct StatusMessage {
   RobotId robot = 0;
@@ -27,7 +37,9 @@ struct StatusMessage {
   int priority = 0;              ///< in narrow places: the lower goes first (inherited by who makes room for it)
   std::optional<RobotId> asks;   ///< the team-mate that is asked to make room
   std::uint64_t map_hash = 0;    ///< TeamMap::hash()
-  static constexpr std::size_t kMaxWay = 64;
+  Epoch epoch;                   ///< of the award that it follows
+  std::vector<RobotId> heard;    ///< team-mates heard lately; at most kMostHeard
+  static constexpr std::size_t kMaxWay = 64, kMostHeard = 64;
 };
 
 /// A frame on the air carries at most this much, messages are made to fit [bytes].
@@ -77,7 +89,8 @@ struct TileRequest {
 struct MapTile {
   RobotId robot = 0;
   std::uint32_t tile = 0;
-  std::vector<std::uint8_t> cells;  ///< values, row by row; at most 1024
+  std::vector<std::uint8_t> cells;  ///< values, row by row; at most kMostCells
+  static constexpr std::size_t kMostCells = 1024;
 };
 
 /// Identifies an auction round: the robot that opened it and its counter.
@@ -87,9 +100,11 @@ struct RoundId {
   friend bool operator==(const RoundId&, const RoundId&) = default;
 };
 
-/// "I finished my task": every robot that hears it answers with its bids.
+/// "I finished my task": every robot that hears it answers with its bids. Repeated while the round is open.
 struct RoundOpen {
   RoundId round;
+  std::vector<RobotId> heard;  ///< whose sheets are in; at most kMostHeard
+  static constexpr std::size_t kMostHeard = 500;
 };
 
 /// What task p would be worth to robot i and what it costs, before the influence of team-mates.
@@ -100,7 +115,7 @@ struct BidEntry {
   float distance = 0.0F;  ///< D_p: length of the shortest safe path [m]
 };
 
-/// All bids of one robot in one round.
+/// All bids of one robot in one round. On the air a long sheet comes in parts that differ in their entries.
 struct BidSheet {
   RoundId round;
   RobotId robot = 0;
@@ -110,7 +125,11 @@ struct BidSheet {
   double explored_rate = 0.0;  ///< A(k) [cells/s]
   bool busy = false;           ///< is on its way to `goal`
   std::optional<Cell> goal;
-  std::vector<BidEntry> entries;
+  std::vector<BidEntry> entries;    ///< at most kMostEntries a part
+  std::uint32_t epoch = 0;          ///< count of the newest award that the bidder has heard of
+  int part = 0, parts = 1;
+  static constexpr std::size_t kMostEntries = 60;
+  static constexpr int kMostParts = 64;
 };
 
 struct Award {
@@ -120,11 +139,25 @@ struct Award {
   double value = 0.0;  ///< E of the winning bid
 };
 
-/// The outcome of a round. A bidder without an award has no task.
+/// The outcome of a round: state, repeated until every bidder follows it or something newer. A bidder without an award
+/// has no task. Of a large team each message names some of the bidders and all that these won.
 struct Awards {
   RoundId round;
-  std::vector<RobotId> bidders;
-  std::vector<Award> awards;
+  std::uint32_t epoch = 0;
+  std::vector<RobotId> bidders;  ///< at most kMostBidders
+  std::vector<Award> awards;     ///< at most one a bidder
+  static constexpr std::size_t kMostBidders = 40;
+};
+
+/// Who the sender is and in which grid it thinks; for late listeners and logs.
+struct Introduction {
+  RobotId robot = 0;
+  RobotSpec spec;
+  GridGeometry geometry;
+  std::string coordinator;
+  int team = 1;  ///< number of robots
+  double time_scale = 1.0;  ///< seconds of its clock in a second of the wall clock; 1 but in simulation
+  static constexpr std::size_t kMostName = 64;  ///< bytes of a name
 };
 
 /// Who owns a task, as far as the sender knows. Of two claims the one of the higher epoch holds; at equal epochs that
@@ -188,12 +221,14 @@ struct PlanSheet {
 };
 
 using Message = std::variant<StatusMessage, MapUpdate, MapDigest, TileRequest, MapTile, RoundOpen, BidSheet, Awards,
-                             ClaimSheet, TaskOffer, TaskAnswer, PlanSheet>;
+                             Introduction, ClaimSheet, TaskOffer, TaskAnswer, PlanSheet>;
 
-/// Messages that only serve to keep maps equal.
-inline bool is_map_traffic(const Message& message) {
-  return std::holds_alternative<MapUpdate>(message) || std::holds_alternative<MapDigest>(message) ||
-         std::holds_alternative<TileRequest>(message) || std::holds_alternative<MapTile>(message);
+/// Messages that serve to share out tasks: a coordinator's affair.
+inline bool is_auction_traffic(const Message& message) {
+  return std::holds_alternative<RoundOpen>(message) || std::holds_alternative<BidSheet>(message) ||
+         std::holds_alternative<Awards>(message) || std::holds_alternative<ClaimSheet>(message) ||
+         std::holds_alternative<TaskOffer>(message) || std::holds_alternative<TaskAnswer>(message) ||
+         std::holds_alternative<PlanSheet>(message);
 }
 
 }  // namespace outrider

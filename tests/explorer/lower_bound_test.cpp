@@ -6,6 +6,7 @@
 #include <random>
 
 #include "explorer/mission.hpp"
+#include "explorer/scan_mapper.hpp"
 
 namespace outrider::explorer {
 namespace {
@@ -79,6 +80,7 @@ TEST(LowerBound, NoRunBeatsIt) {
         MissionSettings settings;
         settings.coordinator = coordinator;
         settings.sim.lidar = lidar;
+        settings.make_mapper = make_scan_mapper;
         settings.record_events = false;
         const MissionResult result = run_mission(map, team, settings);
         for (const auto& [fraction, time] : result.time_to)

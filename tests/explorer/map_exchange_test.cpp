@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-#include "link/ether.hpp"
+#include "link/codec.hpp"
 
 namespace outrider::explorer {
 namespace {

@@ -105,6 +105,7 @@ TEST(Codec, AStatusKeepsEveryField) {
   m.priority = -4;
   m.asks = 2;
   m.map_hash = 0xFEDCBA9876543210U;
+  m.epoch = {17, 5};
   const auto decoded = decode("OUTRIDER_STATUS", encode(kFrom, m));
   ASSERT_TRUE(decoded.packet);
   const auto& got = std::get<StatusMessage>(decoded.packet->message);
@@ -121,6 +122,7 @@ TEST(Codec, AStatusKeepsEveryField) {
   EXPECT_EQ(got.priority, -4);
   EXPECT_EQ(got.asks, 2);
   EXPECT_EQ(got.map_hash, m.map_hash);
+  EXPECT_EQ(got.epoch, m.epoch);
 }
 
 TEST(Codec, NumbersThatCannotBeAreRefused) {

@@ -105,12 +105,15 @@ TEST(Guard, CellsOutsideTheMapAreRefused) {
   Speaker mate;
   const auto cells = static_cast<std::uint32_t>(test::kWireGrid.size());
   StatusMessage outside{.robot = 1, .seq = 1, .goal = Cell{320, 0}};
+  Introduction elsewhere{1, {.name = "r"}, test::kWireGrid, "daa", 4};
+  elsewhere.geometry.width = 10;
   EXPECT_FALSE(guard.accept(mate.say(outside), 0.0));
   EXPECT_FALSE(guard.accept(mate.say(MapUpdate{1, 0, {{cells - 1, 2, 5}}}), 0.0));
   EXPECT_FALSE(guard.accept(mate.say(MapUpdate{1, 0, {{0xFFFFFFFF, 2, 5}}}), 0.0));
-  EXPECT_FALSE(guard.accept(mate.say(Awards{{1, 1}, {0}, {{0, {1, 256}, {1, 1}, 1.0}}}), 0.0));
-  EXPECT_FALSE(guard.accept(mate.say(Awards{{1, 1}, {4}, {}}), 0.0)) << "a team of four";
-  EXPECT_EQ(guard.rejections()[Rejection::kMap], 5U);
+  EXPECT_FALSE(guard.accept(mate.say(Awards{{1, 1}, 1, {0}, {{0, {1, 256}, {1, 1}, 1.0}}}), 0.0));
+  EXPECT_FALSE(guard.accept(mate.say(elsewhere), 0.0));
+  EXPECT_FALSE(guard.accept(mate.say(Awards{{1, 1}, 1, {4}, {}}), 0.0)) << "a team of four";
+  EXPECT_EQ(guard.rejections()[Rejection::kMap], 6U);
   EXPECT_TRUE(guard.accept(mate.say(MapUpdate{1, 0, {{cells - 2, 2, 5}}}), 0.0));
 }
 

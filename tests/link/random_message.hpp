@@ -30,6 +30,12 @@ class MessageSource {
     for (auto& element : elements) element = draw();
     return elements;
   }
+  std::string name() {
+    std::string text(longest_ ? Introduction::kMostName : 1 + below(20), 'x');
+    for (char& c : text) c = "abcXYZ019_-"[below(11)];
+    return text;
+  }
+
   Message status(RobotId robot) {
     StatusMessage m{.robot = robot, .seq = word(), .pose = pose(), .goal = maybe_cell()};
     m.way = list(StatusMessage::kMaxWay, [&] { return cell(); });
@@ -41,18 +47,23 @@ class MessageSource {
     m.priority = number(3000) - 1000;
     if (below(2)) m.asks = number(8);
     m.map_hash = random_();
+    m.epoch = {word(), number(8)};
+    m.heard = list(StatusMessage::kMostHeard, [&] { return number(8); });
     return m;
   }
   Message sheet(RobotId robot) {
     BidSheet m{{number(8), word()}, robot, pose(), real(0.1, 3), real(0.1, 30), real(0, 9), below(2) == 1, maybe_cell()};
-    m.entries = list(60, [&] {
+    m.entries = list(BidSheet::kMostEntries, [&] {
       return BidEntry{cell(), cell(), static_cast<float>(real(0, 900)), static_cast<float>(real(0, 900))};
     });
+    m.epoch = word();
+    m.parts = 1 + number(BidSheet::kMostParts);
+    m.part = number(m.parts);
     return m;
   }
   Message awards(RobotId robot) {
-    Awards m{{robot, word()}, list(40, [&] { return number(500); }), {}};
-    m.awards = list(40, [&] { return Award{number(500), cell(), cell(), real(-1e6, 1e6)}; });
+    Awards m{{robot, word()}, word(), list(Awards::kMostBidders, [&] { return number(500); }), {}};
+    m.awards = list(Awards::kMostBidders, [&] { return Award{number(500), cell(), cell(), real(-1e6, 1e6)}; });
     return m;
   }
   double price() { return below(5) == 0 ? HUGE_VAL : real(-100, 100); }
@@ -70,6 +81,10 @@ class MessageSource {
     m.searched = below(2) == 1;
     return m;
   }
+  Message introduction(RobotId robot) {
+    return Introduction{robot, {name(), pose(), real(0, 3), real(0, 30), real(0, 6), number(1000), real(0, 1)},
+                        kWireGrid, name(), 1 + number(500), real(0.5, 20)};
+  }
 
  public:
   Message draw(std::size_t kind, RobotId robot) {
@@ -80,13 +95,14 @@ class MessageSource {
                      })};
       case 2: return MapDigest{robot, below(80), list(MapDigest::kMostMarks, [&] { return TileMark{word(), word()}; })};
       case 3: return TileRequest{robot, number(8), list(TileRequest::kMostTiles, [&] { return below(80); })};
-      case 4: return MapTile{robot, below(80), list(1024, [&] { return static_cast<std::uint8_t>(below(256)); })};
-      case 5: return RoundOpen{{robot, word()}};
+      case 4: return MapTile{robot, below(80), list(MapTile::kMostCells, [&] { return static_cast<std::uint8_t>(below(256)); })};
+      case 5: return RoundOpen{{robot, word()}, list(RoundOpen::kMostHeard, [&] { return number(500); })};
       case 6: return sheet(robot);
       case 7: return awards(robot);
-      case 8: return claims(robot);
-      case 9: return TaskOffer{{number(8), word()}, robot, number(8), word(), below(256), word(), price()};
-      case 10: return TaskAnswer{{number(8), word()}, robot, number(8), word(), static_cast<TaskAnswer::Verdict>(below(3))};
+      case 8: return introduction(robot);
+      case 9: return claims(robot);
+      case 10: return TaskOffer{{number(8), word()}, robot, number(8), word(), below(256), word(), price()};
+      case 11: return TaskAnswer{{number(8), word()}, robot, number(8), word(), static_cast<TaskAnswer::Verdict>(below(3))};
       default: return plan(robot);
     }
   }

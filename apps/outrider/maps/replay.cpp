@@ -8,6 +8,7 @@
 
 #include "maps_module.hpp"
 #include "progress.hpp"
+#include "replay_lcm.hpp"
 #include "report/metrics.hpp"
 #include "report/run_folder.hpp"
 #include "slam_glue/evaluation.hpp"
@@ -155,6 +156,7 @@ Json result_of(const slam_glue::SlamResult& slam, const std::string& method) {
 void replay(Options& o, Context& ctx) {
   check(o);
   if (!ctx.out.empty()) report::check_out_dir(ctx.out, ctx.force);
+  if (o.logs.front().extension() == ".lcm") return replay_lcm(o.logs.front(), ctx);
   o.slam.seed = ctx.seed;
   std::optional<OccupancyGrid> truth;
   if (!o.true_map.empty()) truth = open_world(o.true_map.string(), o.slam.resolution).map;
@@ -192,8 +194,13 @@ void replay(Options& o, Context& ctx) {
 
 void add_replay(CLI::App& app, Context& ctx) {
   auto o = std::make_shared<Options>();
+<<<<<<< HEAD:apps/outrider/maps/replay.cpp
   CLI::App* verb = app.add_subcommand(kReplay.name, kReplay.about);
   verb->add_option("LOG", o->logs, "MRPT .rawlog[.gz] or CARMEN .log/.clf[.gz]")->required();
+=======
+  CLI::App* verb = app.add_subcommand("replay", "a log becomes a map, a trajectory and a report");
+  verb->add_option("LOG", o->logs, "MRPT .rawlog[.gz], CARMEN .log/.clf[.gz], or the .lcm recording of a live team")->required();
+>>>>>>> 6bed8a1 (Live teams over LCM: auctions that survive bad radio, robot, team, watch, replay of recordings):apps/outrider/replay.cpp
   verb->add_option("--slam", o->slam.method, "see 'outrider list slam'")->capture_default_str()->type_name("METHOD");
   verb->add_option("--resolution", o->slam.resolution, "edge of a cell of the map [m]")
       ->check(number_in(0.005, 10.0))->capture_default_str()->type_name("M");

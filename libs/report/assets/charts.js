@@ -17,6 +17,24 @@ function element(tag, properties = {}, ...children) {
   return node;
 }
 
+/** A button that is on or off. */
+function toggle(label, on, change, tone) {
+  const button = element("button", { type: "button" });
+  if (tone) {
+    const swatch = element("span", { className: "swatch" });
+    swatch.style.background = `var(${tone})`;
+    button.append(swatch);
+  }
+  button.append(label);
+  button.setAttribute("aria-pressed", on);
+  button.addEventListener("click", () => {
+    on = !on;
+    button.setAttribute("aria-pressed", on);
+    change(on);
+  });
+  return button;
+}
+
 const allCharts = [];
 
 function applyTheme() {
@@ -123,6 +141,15 @@ function curveChart(canvas, series, yTitle, onSeek, unit = kPercent) {
     setTime(time) {
       cursor.time = time;
       chart.draw();
+    },
+    /** One more point of the first curve; of very many the older half is thinned out. */
+    append(point) {
+      const set = chart.data.datasets[0];
+      set.data.push(point);
+      if (set.data.length > 2000) set.data = set.data.filter((_, i) => i % 2 || i > 1000);
+      chart.options.scales.x.min = set.data[0].x;
+      chart.options.scales.x.max = point.x;
+      chart.update("none");
     },
   };
 }

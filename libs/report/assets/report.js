@@ -124,24 +124,6 @@ class EventTable {
   }
 }
 
-/** A button that is on or off. */
-function toggle(label, on, change, tone) {
-  const button = element("button", { type: "button" });
-  if (tone) {
-    const swatch = element("span", { className: "swatch" });
-    swatch.style.background = `var(${tone})`;
-    button.append(swatch);
-  }
-  button.append(label);
-  button.setAttribute("aria-pressed", on);
-  button.addEventListener("click", () => {
-    on = !on;
-    button.setAttribute("aria-pressed", on);
-    change(on);
-  });
-  return button;
-}
-
 function drawCharts(data, seek) {
   const names = data.robots.map((r) => r.name);
   const tones = names.map((_, i) => toneOf(i));
