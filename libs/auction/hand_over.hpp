@@ -26,6 +26,8 @@ class HandOver final : public Negotiator {
   TaskSet tasks() const override { return mine_; }
   bool done() const override { return done_; }
   int modifications() const override { return modifications_; }
+  /// `robot` takes no part. To be said before anything is heard.
+  void leave_out(RobotId robot) { peers_[static_cast<std::size_t>(robot)].dead = true; }
   /// Taken for dead.
   bool dead(RobotId robot) const { return peers_[static_cast<std::size_t>(robot)].dead; }
 

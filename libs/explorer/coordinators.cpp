@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "explorer/auction_coordinator.hpp"
+#include "explorer/bundle_coordinator.hpp"
 #include "explorer/coordinator.hpp"
 #include "explorer/dvf_coordinator.hpp"
 #include "world/error.hpp"
@@ -140,6 +141,9 @@ const std::vector<Row>& table() {
       {{"independent", "discounted nearest frontier, planned anew every second (Matignon 2012, eq. 1)"}, make_dvf_coordinator},
       {{"dvf", "distributed value functions; the silent stay where last heard (Matignon 2012, eq. 3, 7)"}, make_dvf_coordinator},
       {{"dvf-reactive", "distributed value functions that forget the silent (Matignon 2012, eq. 6)"}, make_dvf_coordinator},
+      {{"continuous", "free robots bid for one frontier cluster each, the busy keep theirs (Lozenguez 2015, Algorithm 1)"}, make_bundle_coordinator},
+      {{"ssa", "bundles of frontier clusters by sequential simultaneous auctions (Lozenguez 2015, section 5)"}, make_bundle_coordinator},
+      {{"dssa", "the same, negotiated robot by robot with messages (Lozenguez 2015, section 5.3)"}, make_bundle_coordinator},
   };
   return rows;
 }
