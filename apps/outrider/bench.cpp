@@ -124,7 +124,9 @@ void show_result(const BenchResult& result, const std::string& json_name, Contex
 }
 
 const std::vector<BenchInfo>& benches() {
-  static const std::vector<BenchInfo> all{bench_dai2014(), bench_explore_bench(), bench_oracle(), bench_speed(), bench_matignon2012()};
+  static const std::vector<BenchInfo> all{
+      bench_dai2014(),          bench_matignon2012(),           bench_lozenguez_time(), bench_lozenguez_modifications(),
+      bench_lozenguez_gain(),   bench_explore_bench(),          bench_oracle(),         bench_speed()};
   return all;
 }
 

@@ -89,5 +89,8 @@ BenchInfo bench_explore_bench();
 BenchInfo bench_oracle();
 BenchInfo bench_speed();
 BenchInfo bench_matignon2012();
+BenchInfo bench_lozenguez_time();
+BenchInfo bench_lozenguez_modifications();
+BenchInfo bench_lozenguez_gain();
 
 }  // namespace outrider::app

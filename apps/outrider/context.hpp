@@ -43,6 +43,7 @@ void add_explore(CLI::App& app, Context& ctx);
 void add_robot(CLI::App& app, Context& ctx);
 void add_team(CLI::App& app, Context& ctx);
 void add_watch(CLI::App& app, Context& ctx);
+void add_allocate(CLI::App& app, Context& ctx);
 void add_report(CLI::App& app, Context& ctx);
 void add_bench(CLI::App& app, Context& ctx);
 void add_sweep(CLI::App& app, Context& ctx);

@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   add_robot(app, ctx);
   add_team(app, ctx);
   add_watch(app, ctx);
+  add_allocate(app, ctx);
   add_report(app, ctx);
   add_bench(app, ctx);
   add_sweep(app, ctx);
