@@ -5,7 +5,7 @@
 
 namespace outrider::decision {
 
-std::optional<double> ReachingController::heading(const LocalModel& model, Point target, std::optional<double> last) const {
+std::optional<double> ReachingController::heading(const LocalView& model, Point target, std::optional<double> last) const {
   const double aim = std::atan2(target.y, target.x);
   std::optional<double> best;
   for (const double share : {1.0, 0.5, 0.0}) {  // before the robot turns back the margin gives way; the body does not
@@ -16,7 +16,7 @@ std::optional<double> ReachingController::heading(const LocalModel& model, Point
   return best;
 }
 
-std::optional<double> ReachingController::free_heading(const LocalModel& model, Point target, double clear,
+std::optional<double> ReachingController::free_heading(const LocalView& model, Point target, double clear,
                                                        std::optional<double> last) const {
   const double aim = std::atan2(target.y, target.x), reach = std::min(look_ahead, std::hypot(target.x, target.y));
   struct Blocked {
@@ -46,12 +46,12 @@ std::optional<double> ReachingController::free_heading(const LocalModel& model, 
   return best;
 }
 
-std::optional<double> TopologicalController::heading(const LocalModel& model, std::size_t exit, std::optional<double> last) const {
+std::optional<double> TopologicalController::heading(const LocalView& model, std::size_t exit, std::optional<double> last) const {
   assert(exit < model.exits.size());
   return reach.heading(model, model.exits[exit].middle, last);
 }
 
-std::optional<std::size_t> exit_towards(const LocalModel& model, double bearing) {
+std::optional<std::size_t> exit_towards(const LocalView& model, double bearing) {
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < model.exits.size(); ++k)
     if (!best || std::abs(wrap_angle(model.exits[k].bearing - bearing)) < std::abs(wrap_angle(model.exits[*best].bearing - bearing)))

@@ -17,20 +17,20 @@ struct ReachingController {
 
   /// The heading to take now, robot frame [rad]; nothing: walled in. `last`: heading taken before, robot frame.
   /// O(points log points).
-  std::optional<double> heading(const LocalModel& model, Point target, std::optional<double> last = {}) const;
+  std::optional<double> heading(const LocalView& model, Point target, std::optional<double> last = {}) const;
 
  private:
-  std::optional<double> free_heading(const LocalModel& model, Point target, double clear, std::optional<double> last) const;
+  std::optional<double> free_heading(const LocalView& model, Point target, double clear, std::optional<double> last) const;
 };
 
 /// Through an exit: its middle is the target. Needs no odometry.
 struct TopologicalController {
   ReachingController reach;
   /// `exit`: index in model.exits (assertion).
-  std::optional<double> heading(const LocalModel& model, std::size_t exit, std::optional<double> last = {}) const;
+  std::optional<double> heading(const LocalView& model, std::size_t exit, std::optional<double> last = {}) const;
 };
 
 /// The exit whose bearing is nearest to `bearing` [rad, robot frame].
-std::optional<std::size_t> exit_towards(const LocalModel& model, double bearing);
+std::optional<std::size_t> exit_towards(const LocalView& model, double bearing);
 
 }  // namespace outrider::decision

@@ -26,14 +26,14 @@ SemanticState state_of(std::size_t obstacles, const std::vector<Exit>& exits) {
   return exits.size() == 3 ? SemanticState::kJunction : SemanticState::kIntersection;
 }
 
-LocalModel LocalInterpreter::operator()(const LaserScan& scan) const {
+LocalView LocalInterpreter::operator()(const LaserScan& scan) const {
   std::vector<Hit> hits;
   for (std::size_t b = 0; b < scan.ranges.size(); ++b)
     if (const double r = scan.ranges[b]; scan.valid(b) && r <= range) {
       const double angle = scan.angle(b) + scan.T_robot_sensor.theta;
       hits.push_back({angle, {r * std::cos(angle), r * std::sin(angle)}});
     }
-  LocalModel model;
+  LocalView model;
   if (hits.empty()) return model;
   // Gaps between neighbours that the robot fits through. A gap too wide to be narrow part of a wall seen from the side
   // has beams without a hit in it, or is a step in depth; both are ways.

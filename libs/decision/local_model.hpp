@@ -21,7 +21,7 @@ struct Exit {
   bool open = false;     ///< nothing on the other side: one obstacle delimits it; regular: two do
 };
 
-struct LocalModel {
+struct LocalView {
   std::vector<Obstacle> obstacles;
   std::vector<Exit> exits;  ///< from the robot's left to its right, beginning behind it
   SemanticState state = SemanticState::kFreeSpace;
@@ -33,7 +33,7 @@ struct LocalInterpreter {
   double open_angle = 2.6;  ///< a gap wider than this is open [rad]
 
   /// `scan`: beams all around, counter-clockwise, from a sensor at the robot's centre. O(beams).
-  LocalModel operator()(const LaserScan& scan) const;
+  LocalView operator()(const LaserScan& scan) const;
 };
 
 /// The eight states of Fig. 2c. docs/missions.md has our reading of the figure.

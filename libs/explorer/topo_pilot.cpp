@@ -109,7 +109,7 @@ bool TopoPilot::passed(const decision::Path& path) const {
 /// Chooses the controller by the semantic state: topological control in stable states and through the exits of punctual
 /// ones, reaching control else.
 std::optional<double> TopoPilot::steer(const PilotSensing& sensing) {
-  decision::LocalModel model = settings_.interpret(sensing.scan);
+  decision::LocalView model = settings_.interpret(sensing.scan);
   state_ = model.state;
   for (const Point mate : sensing.team_mates) {  // round obstacles of their own
     decision::Obstacle disc;

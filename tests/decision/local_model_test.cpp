@@ -33,7 +33,7 @@ std::pair<OccupancyGrid, Point> place(const std::vector<std::string>& rows) {
   return {map, robot};
 }
 
-LocalModel at(const std::vector<std::string>& rows, double theta = 0.0) {
+LocalView at(const std::vector<std::string>& rows, double theta = 0.0) {
   const auto [map, robot] = place(rows);
   return LocalInterpreter{.range = 2.0, .passage = 0.6}(look(map, {robot.x, robot.y, theta}));
 }
@@ -70,12 +70,12 @@ TEST(LocalInterpreter, OpenExitsMakeTheOtherStates) {
 }
 
 TEST(LocalInterpreter, ExitsAreCountedFromTheLeftWhateverTheHeading) {
-  const LocalModel east = at(closed(kCrossing, 9, 14, 0, 9), 0.0);  // ways north, east, south
+  const LocalView east = at(closed(kCrossing, 9, 14, 0, 9), 0.0);  // ways north, east, south
   ASSERT_EQ(east.exits.size(), 3U);
   EXPECT_NEAR(east.exits[0].bearing, kPi / 2, 0.1);
   EXPECT_NEAR(east.exits[1].bearing, 0.0, 0.1);
   EXPECT_NEAR(east.exits[2].bearing, -kPi / 2, 0.1);
-  const LocalModel turned = at(closed(kCrossing, 9, 14, 0, 9), kPi / 4);
+  const LocalView turned = at(closed(kCrossing, 9, 14, 0, 9), kPi / 4);
   ASSERT_EQ(turned.exits.size(), 3U);
   EXPECT_NEAR(turned.exits[0].bearing, kPi / 4, 0.1);
   EXPECT_NEAR(turned.exits[2].bearing, -3 * kPi / 4, 0.1);
@@ -92,7 +92,7 @@ bool drive(const std::vector<std::string>& rows, Point target, double radius) {
   std::optional<double> last;
   for (int k = 0; k < 600; ++k) {
     if (distance(pose.position(), target) < 0.1) return true;
-    const LocalModel model = interpret(look(map, pose));
+    const LocalView model = interpret(look(map, pose));
     const auto h = reach.heading(model, inverse(pose) * target, last);
     if (!h) return false;
     pose = pose * Pose2{0.05 * std::cos(*h), 0.05 * std::sin(*h), *h};
@@ -123,7 +123,7 @@ TEST(ReachingController, SaysWhenItIsWalledIn) {
 }
 
 TEST(TopologicalController, TakesTheExitThatWasCounted) {
-  const LocalModel model = at(kCrossing);
+  const LocalView model = at(kCrossing);
   ASSERT_EQ(model.exits.size(), 4U);
   const auto left = exit_towards(model, kPi / 2);
   ASSERT_TRUE(left);
