@@ -96,6 +96,23 @@ std::string relations(const Json& result) {
   return mean ? fmt::format("{:.4f} ± {:.4f} m", *mean, std.value_or(0.0)) : "";
 }
 
+/// Precision within the tolerance that the run was measured with.
+std::string near_truth(const Json& result) {
+  const auto share = number(result, {"map_quality", "within_tolerance", "precision"});
+  const auto tolerance = number(result, {"map_quality", "within_tolerance", "tolerance_m"});
+  return share && tolerance ? fmt::format("{} within {:.2f} m", percent(*share), *tolerance) : "";
+}
+
+/// Sum of an object of metres.
+Value total_figure(std::vector<const char*> path) {
+  return [=](const Json& result) -> std::string {
+    const Json* at = &result;
+    for (std::size_t i = 0; at != nullptr && i + 1 < path.size(); ++i) at = find(*at, {path[i]});
+    const auto sum = at != nullptr ? sum_and_max(*at, path.back()) : std::nullopt;
+    return sum ? fmt::format("{:.1f} m", sum->first) : "";
+  };
+}
+
 Value path_figure(bool total) {
   return [=](const Json& result) -> std::string {
     const auto path = sum_and_max(result, "path_m");
@@ -125,9 +142,11 @@ const std::vector<std::pair<std::string, Value>>& catalogue() {
       {"loop closures", plain({"slam", "loop_closures"}, "{:.0f}")},
       {"relations, translation", relations},
       {"absolute trajectory error", plain({"ate_m", "rmse"}, "{:.3f} m rmse")},
+      {"relative pose error", plain({"rpe", "translation_m", "rmse"}, "{:.3f} m rmse a scan")},
       {"path, whole team", path_figure(true)},
       {"path, longest", path_figure(false)},
       {"overlap", plain({"overlap", "fraction"}, "{:.1f} %", 100.0)},
+      {"driven without news", total_figure({"overlap", "wasted_m"})},
       {"Σ coverage − team's", plain({"overlap", "sum_cov_minus_cov_team"}, "{:+.3f}")},
       {"spread of shares (std)", plain({"workload_std"}, "{:.3f}")},
       {"trajectory crossings", plain({"trajectory_intersections"}, "{:.0f}")},
@@ -142,6 +161,12 @@ const std::vector<std::pair<std::string, Value>>& catalogue() {
       {"map, accuracy", plain({"map_quality", "accuracy"}, "{:.3f}")},
       {"map, precision of walls", plain({"map_quality", "precision"}, "{:.3f}")},
       {"map, recall of walls", plain({"map_quality", "recall"}, "{:.3f}")},
+      {"map, completeness", plain({"map_quality", "completeness"}, "{:.1f} %", 100.0)},
+      {"map, walls near true ones", near_truth},
+      {"map, wall to true wall", plain({"map_quality", "wall_to_truth_m", "mean"}, "{:.3f} m mean")},
+      {"scan ends on walls of the map", plain({"self_consistency", "end_points_agree"}, "{:.1f} %", 100.0)},
+      {"beams through walls of the map", plain({"self_consistency", "seen_through"}, "{:.1f} %", 100.0)},
+      {"doubled walls", plain({"self_consistency", "doubled_walls"}, "{:.1f} %", 100.0)},
       {"left unexplored", left_over},
   };
   return kRows;

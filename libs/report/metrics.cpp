@@ -42,6 +42,44 @@ std::optional<SeenAreas> seen_areas(std::span<const RobotRecord> robots) {
   return areas;
 }
 
+std::optional<std::vector<PairOverlap>> pair_overlaps(std::span<const RobotRecord> robots) {
+  if (!seen_counts(robots)) return std::nullopt;
+  const double area = robots[0].seen.geometry().cell_area();
+  const auto seen_m2 = [&](std::size_t i) {
+    const auto& cells = robots[i].seen.data();
+    return area * static_cast<double>(cells.size() - static_cast<std::size_t>(std::count(cells.begin(), cells.end(), 0)));
+  };
+  std::vector<PairOverlap> pairs;
+  for (std::size_t a = 0; a < robots.size(); ++a)
+    for (std::size_t b = a + 1; b < robots.size(); ++b) {
+      std::size_t both = 0;
+      for (std::size_t i = 0; i < robots[a].seen.size(); ++i) both += robots[a].seen[i] != 0 && robots[b].seen[i] != 0;
+      const double m2 = area * static_cast<double>(both), smaller = std::min(seen_m2(a), seen_m2(b));
+      pairs.push_back({a, b, m2, smaller > 0.0 ? m2 / smaller : 0.0});
+    }
+  return pairs;
+}
+
+std::vector<double> wasted_m(const RunRecord& record) {
+  const std::size_t n = record.robots.size();
+  const auto complete = [n](const TimelineRow& row) { return row.robot_m2.size() == n; };
+  if (record.timeline.empty() || !std::all_of(record.timeline.begin(), record.timeline.end(), complete)) return {};
+  std::vector<double> wasted(n, 0.0);
+  for (std::size_t r = 0; r < n; ++r) {
+    const RobotRecord& robot = record.robots[r];
+    std::size_t row = 0;
+    for (std::size_t i = 1; i < robot.trajectory.size(); ++i) {
+      // A step of the way belongs to the row in which it ends.
+      const double t = robot.trajectory[i].t - robot.clock_s;
+      while (row + 1 < record.timeline.size() && record.timeline[row].time_s < t) ++row;
+      const double before = row > 0 ? record.timeline[row - 1].robot_m2[r] : 0.0;
+      if (record.timeline[row].robot_m2[r] <= before)
+        wasted[r] += distance(robot.trajectory[i - 1].pose.position(), robot.trajectory[i].pose.position());
+    }
+  }
+  return wasted;
+}
+
 std::optional<double> time_to(std::span<const TimelineRow> timeline, double fraction) {
   for (const TimelineRow& row : timeline)
     if (row.explored_fraction >= fraction) return row.time_s;
@@ -58,32 +96,6 @@ double standard_deviation(std::span<const double> values) {
 }
 
 namespace {
-
-bool is_judged(const OccupancyGrid& truth, Cell c) {
-  if (!truth.contains(c) || truth[c] == CellState::kUnknown) return false;
-  if (truth[c] == CellState::kFree) return true;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const Cell n{c.x + dx, c.y + dy};
-      if (truth.contains(n) && truth[n] == CellState::kFree) return true;
-    }
-  return false;
-}
-
-/// Calls visit(index of the map's cell, its state, the true state) for every judged cell.
-template <class Visit>
-void for_judged_cells(const OccupancyGrid& map, const OccupancyGrid& truth, Visit&& visit) {
-  const GridGeometry& g = map.geometry();
-  const bool same = g == truth.geometry();
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const Cell c = same ? g.cell_at(i) : truth.geometry().cell_of(g.center(g.cell_at(i)));
-    if (is_judged(truth, c)) visit(i, map[i], truth[c]);
-  }
-}
-
-double ratio(std::size_t part, std::size_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
-}
 
 /// Keys of `result` in the order in which they are written; others follow as the run gave them.
 constexpr std::array kResultOrder{"status",
@@ -154,47 +166,45 @@ void derive_overlap(const RunRecord& record, Json& derived) {
   derived["overlap"] = {{"fraction", areas->overlap_fraction()},
                         {"sum_cov_minus_cov_team", whole > 0.0 ? (areas->sum - areas->explored()) / whole : 0.0},
                         {"seen_m2", {{"1", areas->once}, {"2", areas->twice}, {"3+", areas->more}}}};
+  Json& overlap = derived["overlap"];
+  const auto name = [&](std::size_t i) { return record.robots[i].spec.name; };
+  overlap["pairs"] = Json::array();
+  for (const PairOverlap& pair : *pair_overlaps(record.robots))
+    overlap["pairs"].push_back(
+        {{"robots", {name(pair.a), name(pair.b)}}, {"m2", pair.m2}, {"share_of_smaller", pair.share_of_smaller}});
+  const std::vector<double> wasted = wasted_m(record);
+  for (std::size_t i = 0; i < wasted.size(); ++i) overlap["wasted_m"][name(i)] = wasted[i];
+}
+
+Json distances_json(const Distances& d) { return {{"mean", d.mean}, {"median", d.median}, {"max", d.max}}; }
+
+Json quality_json(const RunRecord& record) {
+  const MapQuality q = map_quality(record.map, *record.truth, record.T_truth_map);
+  Json json{{"iou_occupied", q.iou_occupied},
+            {"iou_free", q.iou_free},
+            {"accuracy", q.accuracy},
+            {"precision", q.precision},
+            {"recall", q.recall},
+            {"completeness", q.completeness},
+            {"within_tolerance",
+             {{"tolerance_m", q.tolerance_m},
+              {"precision", q.precision_within},
+              {"recall", q.recall_within},
+              {"recall_seen", q.recall_seen}}},
+            {"wall_to_truth_m", distances_json(q.wall_to_truth)},
+            {"truth_to_wall_m", distances_json(q.truth_to_wall)}};
+  if (!record.alignment.is_null()) json["alignment"] = record.alignment;
+  return json;
 }
 
 }  // namespace
-
-Grid<MapError> map_errors(const OccupancyGrid& map, const OccupancyGrid& truth) {
-  Grid<MapError> errors(map.geometry());
-  for_judged_cells(map, truth, [&](std::size_t i, CellState seen, CellState real) {
-    if (seen == real) return;
-    errors[i] = seen == CellState::kUnknown    ? MapError::kUnseen
-                : seen == CellState::kOccupied ? MapError::kFalseWall
-                                               : MapError::kMissedWall;
-  });
-  return errors;
-}
-
-MapQuality map_quality(const OccupancyGrid& map, const OccupancyGrid& truth) {
-  std::array<std::array<std::size_t, 3>, 3> n{};  // [in the map][in truth]
-  for_judged_cells(map, truth, [&](std::size_t, CellState seen, CellState real) {
-    ++n[static_cast<std::size_t>(seen)][static_cast<std::size_t>(real)];
-  });
-  constexpr std::size_t kU = 0, kF = 1, kO = 2;
-  return {.iou_occupied = ratio(n[kO][kO], n[kO][kO] + n[kO][kF] + n[kF][kO] + n[kU][kO]),
-          .iou_free = ratio(n[kF][kF], n[kF][kF] + n[kF][kO] + n[kO][kF] + n[kU][kF]),
-          .accuracy = ratio(n[kO][kO] + n[kF][kF], n[kO][kO] + n[kF][kF] + n[kO][kF] + n[kF][kO]),
-          .precision = ratio(n[kO][kO], n[kO][kO] + n[kO][kF]),
-          .recall = ratio(n[kO][kO], n[kO][kO] + n[kF][kO] + n[kU][kO])};
-}
 
 Json derive_result(const RunRecord& record) {
   Json known = Json::object();
   derive_progress(record, known);
   derive_team(record, known);
   derive_overlap(record, known);
-  if (record.truth && record.map.size() > 0) {
-    const MapQuality q = map_quality(record.map, *record.truth);
-    known["map_quality"] = {{"iou_occupied", q.iou_occupied},
-                            {"iou_free", q.iou_free},
-                            {"accuracy", q.accuracy},
-                            {"precision", q.precision},
-                            {"recall", q.recall}};
-  }
+  if (record.truth && record.map.size() > 0) known["map_quality"] = quality_json(record);
   if (record.result.is_object())
     for (const auto& [key, value] : record.result.items()) known[key] = value;
   Json ordered = Json::object();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "report/map_quality.hpp"
 #include "report/run_record.hpp"
 
 namespace outrider::report {
@@ -28,34 +29,24 @@ std::optional<Grid<std::uint8_t>> seen_counts(std::span<const RobotRecord> robot
 /// Absent when `seen_counts` is. O(cells * robots).
 std::optional<SeenAreas> seen_areas(std::span<const RobotRecord> robots);
 
+/// Area that two robots both saw with their own sensors.
+struct PairOverlap {
+  std::size_t a = 0, b = 0;  ///< robots, a < b
+  double m2 = 0.0;
+  double share_of_smaller = 0.0;  ///< of the area that the robot that saw less has seen
+};
+/// Every pair, in the order of the team; absent when `seen_counts` is. O(cells * robots^2).
+std::optional<std::vector<PairOverlap>> pair_overlaps(std::span<const RobotRecord> robots);
+
+/// Distance that each robot drove in rows of the timeline in which it added nothing to what the team has seen [m]; empty
+/// when the timeline does not know the robots' areas. Trajectories may have a clock of their own (page_data.hpp).
+std::vector<double> wasted_m(const RunRecord& record);
+
 /// Time of the first row that has explored `fraction` [s]; not interpolated.
 std::optional<double> time_to(std::span<const TimelineRow> timeline, double fraction);
 
 /// Population standard deviation; 0 for an empty span.
 double standard_deviation(std::span<const double> values);
-
-/// The judged cells against the true map: a cell is judged when it is free in truth, or occupied in truth with a
-/// free cell among its eight neighbours. The inside of walls, which no sensor sees, counts neither way.
-struct MapQuality {
-  double iou_occupied = 0.0;  ///< |map and truth occupied| / |map or truth occupied|
-  double iou_free = 0.0;      ///< the same for free cells
-  double accuracy = 0.0;      ///< of the judged cells that the map knows, the share that is right
-  double precision = 0.0;     ///< of the judged cells occupied in the map, the share occupied in truth
-  double recall = 0.0;        ///< of the judged cells occupied in truth, the share occupied in the map
-};
-
-/// What a cell of the map got wrong.
-enum class MapError : std::uint8_t {
-  kNone = 0,
-  kFalseWall = 1,   ///< occupied in the map, free in truth
-  kMissedWall = 2,  ///< free in the map, occupied (and visible) in truth
-  kUnseen = 3,      ///< unknown in the map, judged in truth
-};
-
-/// The truth is looked up at the centres of the map's cells, so the geometries may differ; cells outside the truth
-/// are not judged. O(cells).
-Grid<MapError> map_errors(const OccupancyGrid& map, const OccupancyGrid& truth);
-MapQuality map_quality(const OccupancyGrid& map, const OccupancyGrid& truth);
 
 /// The `result` section of run.json: what the run itself reported (record.result wins key by key), completed by
 /// what can be derived, keys in the documented order.

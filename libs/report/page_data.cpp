@@ -35,7 +35,7 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t most) {
 double time_zero(const RunRecord& record) {
   double first = std::numeric_limits<double>::infinity();
   for (const RobotRecord& robot : record.robots)
-    if (!robot.trajectory.empty()) first = std::min(first, robot.trajectory.front().t);
+    if (!robot.trajectory.empty()) first = std::min(first, robot.trajectory.front().t - robot.clock_s);
   return std::isfinite(first) ? first : 0.0;
 }
 
@@ -58,7 +58,7 @@ Json robots_json(const RunRecord& record) {
     robots.push_back({{"name", robot.spec.name},
                       {"range", rounded(robot.spec.range, 100.0)},
                       {"radius", rounded(robot.spec.radius, 100.0)},
-                      {"path", path_json(robot.trajectory, t0, most)}});
+                      {"path", path_json(robot.trajectory, t0 + robot.clock_s, most)}});
   return robots;
 }
 
@@ -100,7 +100,7 @@ Json map_json(const RunRecord& record) {
   if (record.known_since.geometry() == g) map["known_since"] = layer(record.known_since.data());
   const auto counts = seen_counts(record.robots);
   if (counts && counts->geometry() == g && record.robots.size() > 1) map["seen"] = layer(counts->data());
-  if (record.truth) map["errors"] = layer(map_errors(record.map, *record.truth).data());
+  if (record.truth) map["errors"] = layer(map_errors(record.map, *record.truth, record.T_truth_map).data());
   return map;
 }
 

@@ -28,6 +28,7 @@ struct RobotRecord {
   std::optional<OccupancyGrid> map;   ///< its own map at the end
   Grid<std::uint8_t> seen;            ///< 1 where this robot's own sensor saw the cell; empty grid = unknown
   double first_seen_m2 = 0.0;         ///< area that this robot was the first of the team to see [m^2]
+  double clock_s = 0.0;               ///< stamp of the trajectory at time 0 of the timeline [s]
 };
 
 struct TimelineRow {
@@ -52,6 +53,8 @@ struct RunRecord {
   std::vector<RobotRecord> robots;
   OccupancyGrid map;  ///< the team's map
   std::optional<OccupancyGrid> truth;
+  Pose2 T_truth_map;  ///< where the map lies on the truth
+  Json alignment;     ///< how T_truth_map was found; null: map and truth share their frame
   double playback_step_s = 1.0;
   Grid<std::uint16_t> known_since;  ///< playback step, or kNeverKnown; same geometry as map, or empty
   std::vector<TimelineRow> timeline;

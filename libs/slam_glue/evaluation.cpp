@@ -57,8 +57,18 @@ std::optional<Pose2> interpolate(std::span<const TimedPose> poses, double t, dou
                wrap_angle(a.pose.theta + s * wrap_angle(b.pose.theta - a.pose.theta))};
 }
 
-/// The rigid transform that brings `from` nearest to `to` in the sense of least squares.
-Pose2 align(std::span<const Point> from, std::span<const Point> to) {
+/// Null for an empty list; the earlier of two equally near ones.
+const TimedPose* nearest_in_time(std::span<const TimedPose> poses, double t) {
+  if (poses.empty()) return nullptr;
+  const auto after =
+      std::lower_bound(poses.begin(), poses.end(), t, [](const TimedPose& p, double s) { return p.t < s; });
+  if (after == poses.begin()) return &*after;
+  if (after == poses.end()) return &*(after - 1);
+  return t - (after - 1)->t <= after->t - t ? &*(after - 1) : &*after;
+}
+
+/// The rigid transform that brings the positions `from` nearest to `to` in the sense of least squares.
+Pose2 align(std::span<const Pose2> from, std::span<const Pose2> to) {
   const auto n = static_cast<double>(from.size());
   Point f, g;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -142,25 +152,52 @@ std::string cartographer_lines(const RelationErrors& e) {
          line("Abs rotational", e.rotation_deg, "deg") + line("Sqr rotational", e.rotation_sqr_deg2, "deg^2");
 }
 
-AteResult absolute_trajectory_error(std::span<const TimedPose> trajectory, std::span<const TimedPose> reference,
-                                    double max_gap_s) {
-  std::vector<Point> ours, theirs;
-  for (const TimedPose& p : trajectory) {
-    const auto truth = interpolate(reference, p.t, max_gap_s);
-    if (!truth) continue;
-    ours.push_back(p.pose.position());
-    theirs.push_back(truth->position());
+PosePairs associate(std::span<const TimedPose> trajectory, std::span<const TimedPose> reference,
+                    double max_difference_s, double max_gap_s) {
+  const bool ours_shorter = trajectory.size() < reference.size();
+  const auto shorter = ours_shorter ? trajectory : reference, longer = ours_shorter ? reference : trajectory;
+  PosePairs pairs;
+  for (const TimedPose& p : shorter) {
+    const TimedPose* q = nearest_in_time(longer, p.t);
+    if (q == nullptr || std::abs(q->t - p.t) > max_difference_s) continue;
+    pairs.ours.push_back(ours_shorter ? p.pose : q->pose);
+    pairs.reference.push_back(ours_shorter ? q->pose : p.pose);
   }
-  if (ours.size() < 2)
+  if (2 * pairs.ours.size() < shorter.size() || pairs.ours.size() < 2) {
+    pairs = {{}, {}, true};
+    for (const TimedPose& p : trajectory)
+      if (const auto truth = interpolate(reference, p.t, max_gap_s)) {
+        pairs.ours.push_back(p.pose);
+        pairs.reference.push_back(*truth);
+      }
+  }
+  if (pairs.ours.size() < 2)
     throw InputError(fmt::format(
-        "the reference covers {} poses of the trajectory; expected time stamps on the same clock", ours.size()));
+        "the reference covers {} poses of the trajectory; expected time stamps on the same clock", pairs.ours.size()));
+  return pairs;
+}
+
+AteResult absolute_trajectory_error(const PosePairs& pairs) {
   AteResult result;
-  result.matched = ours.size();
-  result.T_reference_map = align(ours, theirs);
+  result.matched = pairs.ours.size();
+  result.T_reference_map = align(pairs.ours, pairs.reference);
   std::vector<double> errors;
-  for (std::size_t i = 0; i < ours.size(); ++i) errors.push_back(distance(result.T_reference_map * ours[i], theirs[i]));
+  for (std::size_t i = 0; i < result.matched; ++i)
+    errors.push_back(
+        distance(result.T_reference_map * pairs.ours[i].position(), pairs.reference[i].position()));
   result.error_m = statistics(std::move(errors));
   return result;
+}
+
+RpeResult relative_pose_error(const PosePairs& pairs) {
+  std::vector<double> metres, degrees;
+  for (std::size_t i = 1; i < pairs.ours.size(); ++i) {
+    const Pose2 step = inverse(pairs.ours[i - 1]) * pairs.ours[i];
+    const Pose2 error = inverse(inverse(pairs.reference[i - 1]) * pairs.reference[i]) * step;
+    metres.push_back(std::hypot(error.x, error.y));
+    degrees.push_back(std::abs(error.theta) * kDegrees);
+  }
+  return {metres.size(), statistics(std::move(metres)), statistics(std::move(degrees))};
 }
 
 std::vector<TimedPose> load_trajectory(const std::filesystem::path& file) {

@@ -1,5 +1,5 @@
 #pragma once
-// How good is a trajectory: relations (Kuemmerle et al. 2009) and absolute trajectory error (as evo computes it).
+// How good is a trajectory: relations (Kuemmerle et al. 2009), absolute and relative errors (as evo computes them).
 
 #include <filesystem>
 #include <span>
@@ -39,17 +39,33 @@ RelationErrors evaluate_relations(std::span<const TimedPose> trajectory, std::sp
 /// The four lines that Cartographer's evaluation prints.
 std::string cartographer_lines(const RelationErrors& errors);
 
+/// Poses of a trajectory beside the reference's at the same moments.
+struct PosePairs {
+  std::vector<Pose2> ours, reference;
+  bool interpolated = false;  ///< the reference between its stamps, because too few stamps are equal
+};
+
+/// As evo associates: each stamp of the shorter list with the nearest of the longer, at most `max_difference_s` away.
+/// When that serves less than half of the shorter list, every pose of the trajectory is compared with the reference
+/// interpolated between stamps at most `max_gap_s` apart. Throws InputError when fewer than two poses match.
+PosePairs associate(std::span<const TimedPose> trajectory, std::span<const TimedPose> reference,
+                    double max_difference_s = 0.01, double max_gap_s = 1.0);
+
 struct AteResult {
-  std::size_t matched = 0;  ///< reference poses compared
+  std::size_t matched = 0;  ///< poses compared
   ErrorStatistics error_m;
   Pose2 T_reference_map;  ///< the rigid alignment that was applied
 };
 
-/// Absolute trajectory error after the best rigid alignment (Umeyama 1991, without scale). Each pose is matched with
-/// the reference, interpolated at its time where that lies between two reference poses at most `max_gap_s` apart.
-/// Throws InputError when fewer than two poses match.
-AteResult absolute_trajectory_error(std::span<const TimedPose> trajectory, std::span<const TimedPose> reference,
-                                    double max_gap_s = 1.0);
+/// Absolute trajectory error after the best rigid alignment (Umeyama 1991, without scale): `evo_ape ... -a`.
+AteResult absolute_trajectory_error(const PosePairs& pairs);
+
+/// Relative pose error between neighbouring poses: `evo_rpe` (translation part, and rotation angle).
+struct RpeResult {
+  std::size_t matched = 0;  ///< steps compared
+  ErrorStatistics translation_m, rotation_deg;
+};
+RpeResult relative_pose_error(const PosePairs& pairs);
 
 /// TUM (`t x y z qx qy qz qw`) or `t x y theta`, told apart by the number of columns; `#` starts a comment. Sorted by
 /// time. Throws InputError with the line.

@@ -31,14 +31,19 @@ double no_echo_range(const LaserScan& scan) {
 }
 
 /// The smallest grid, aligned with multiples of the resolution, that holds the trajectory and everything seen from it.
-GridGeometry bounds(const LogReader& reader, const SlamOptions& options, const SlamResult& result) {
+/// A sample of the scans goes to `check` on the way.
+GridGeometry bounds(const LogReader& reader, const SlamOptions& options, const SlamResult& result,
+                    ConsistencyCheck& check) {
+  constexpr std::size_t kSample = 400;  // scans
+  const std::size_t stride = std::max<std::size_t>(1, result.scans / kSample);
   Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Point high{-low.x, -low.y};
   const auto include = [&](Point p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   };
-  for_each_posed_scan(reader, result, [&](const LaserScan& scan, const Pose2& T_map_robot, std::size_t) {
+  for_each_posed_scan(reader, result, [&](const LaserScan& scan, const Pose2& T_map_robot, std::size_t i) {
+    if (i % stride == 0) check.add(scan, T_map_robot);
     const Pose2 T_map_sensor = T_map_robot * scan.T_robot_sensor;
     include(T_map_robot.position());
     for (std::size_t b = 0; b < scan.ranges.size(); ++b) {
@@ -61,7 +66,8 @@ GridGeometry bounds(const LogReader& reader, const SlamOptions& options, const S
 }  // namespace
 
 void build_map(const LogReader& reader, const SlamOptions& options, SlamResult& result) {
-  const GridGeometry geometry = bounds(reader, options, result);
+  ConsistencyCheck check(options.max_range_m);
+  const GridGeometry geometry = bounds(reader, options, result, check);
   MapperOptions mapping;
   mapping.max_range_m = options.max_range_m;
   double t0 = std::numeric_limits<double>::infinity(), t1 = -t0;
@@ -84,6 +90,7 @@ void build_map(const LogReader& reader, const SlamOptions& options, SlamResult& 
     const auto step = static_cast<std::uint16_t>((result.trajectory[i].t - t0) / result.playback_step_s);
     for (const std::uint32_t cell : changed) result.known_since[cell] = std::min(result.known_since[cell], step);
   });
+  result.consistency = check.result(mapper->states());
   result.mapper = std::move(mapper);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "slam_glue/consistency.hpp"
 #include "slam_glue/grid_mapper.hpp"
 #include "slam_glue/logs.hpp"
 
@@ -53,6 +54,7 @@ struct SlamResult {
   double playback_step_s = 1.0;
   Grid<std::uint16_t> known_since;  ///< playback step at which the cell became known, 65535 = never
   double sensor_z = 0.0;            ///< height of the scan plane [m]
+  SelfConsistency consistency;      ///< of the published map with a sample of the scans
 };
 
 /// Runs SLAM over one log and rebuilds the map along the final trajectory. Deterministic for equal input, options and

@@ -46,33 +46,28 @@ TEST(Metrics, TimeToIsTheFirstRowThatReachesTheFraction) {
   EXPECT_EQ(time_to(rows, 0.99), std::nullopt);
 }
 
-TEST(Metrics, MapQualityByHand) {
-  //                                   missed wall v      v unseen free
-  const OccupancyGrid truth = ascii_map({"#####", "##..#", "#...#", "#####"});
-  const OccupancyGrid map = ascii_map({"?#.##", "?#.?#", "?#..#", "?####"});
-  // The column x = 0 holds judged walls too (their neighbours at x = 1 are free in row 1).
-  const Grid<MapError> errors = map_errors(map, truth);
-  EXPECT_EQ(errors[Cell({2, 3})], MapError::kMissedWall);
-  EXPECT_EQ(errors[Cell({3, 2})], MapError::kUnseen);
-  EXPECT_EQ(errors[Cell({1, 1})], MapError::kFalseWall);
-  EXPECT_EQ(errors[Cell({0, 3})], MapError::kNone) << "inside a wall: nobody can see it";
-  EXPECT_EQ(errors[Cell({0, 0})], MapError::kUnseen);
-  const MapQuality q = map_quality(map, truth);
-  // Judged: 5 free; walls: all but (0,3) = 14. Right walls: 14 - (0,2),(0,1),(0,0) unseen - (2,3) missed = 10.
-  EXPECT_DOUBLE_EQ(q.iou_occupied, 10.0 / 15.0);
-  EXPECT_DOUBLE_EQ(q.iou_free, 3.0 / 6.0);
-  EXPECT_DOUBLE_EQ(q.precision, 10.0 / 11.0);
-  EXPECT_DOUBLE_EQ(q.recall, 10.0 / 14.0);
-  EXPECT_DOUBLE_EQ(q.accuracy, 13.0 / 15.0);
+TEST(Metrics, PairsShareWhatBothSaw) {
+  std::vector<RobotRecord> team(3);
+  team[0].seen = ascii_seen({"1110"});
+  team[1].seen = ascii_seen({"0110"});
+  team[2].seen = ascii_seen({"0000"});
+  const auto pairs = *pair_overlaps(team);
+  ASSERT_EQ(pairs.size(), 3u);
+  EXPECT_DOUBLE_EQ(pairs[0].m2, 2.0);
+  EXPECT_DOUBLE_EQ(pairs[0].share_of_smaller, 1.0);
+  EXPECT_DOUBLE_EQ(pairs[1].m2, 0.0);
+  EXPECT_DOUBLE_EQ(pairs[1].share_of_smaller, 0.0) << "a robot that saw nothing";
 }
 
-TEST(Metrics, MapQualityLooksTheTruthUpInItsOwnGeometry) {
-  OccupancyGrid truth({0.5, {-1.0, -1.0}, 8, 8}, CellState::kFree);  // finer, and larger
-  OccupancyGrid map({1.0, {0.0, 0.0}, 2, 2}, CellState::kFree);
-  map[3] = CellState::kOccupied;
-  const MapQuality q = map_quality(map, truth);
-  EXPECT_DOUBLE_EQ(q.iou_free, 0.75);
-  EXPECT_DOUBLE_EQ(q.accuracy, 0.75);
+TEST(Metrics, DistanceWithoutNewsIsWasted) {
+  RunRecord record;
+  record.robots.resize(1);
+  record.robots[0].clock_s = 100.0;  // the log's clock; the timeline counts from its first scan
+  record.robots[0].trajectory = {{100.0, {0, 0, 0}}, {101.0, {1, 0, 0}}, {102.0, {3, 0, 0}}, {103.0, {3, 4, 0}}};
+  record.timeline = {{0.0, 0, 0, {1.0}}, {1.0, 0, 0, {2.0}}, {2.0, 0, 0, {2.0}}, {3.0, 0, 0, {2.5}}};
+  EXPECT_EQ(wasted_m(record), std::vector<double>{2.0});
+  record.timeline[1].robot_m2.clear();
+  EXPECT_TRUE(wasted_m(record).empty());
 }
 
 TEST(Metrics, DerivedResultOfTheSmallRecord) {

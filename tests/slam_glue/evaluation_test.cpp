@@ -60,7 +60,7 @@ TEST(Ate, RigidMotionOfTheWholePathCostsNothing) {
     path.push_back({0.5 * i, {0.3 * i, std::sin(0.4 * i), 0.0}});
     truth.push_back({0.5 * i, T * path.back().pose});
   }
-  const AteResult ate = absolute_trajectory_error(path, truth);
+  const AteResult ate = absolute_trajectory_error(associate(path, truth));
   EXPECT_EQ(ate.matched, 20u);
   EXPECT_NEAR(ate.error_m.max, 0.0, 1e-9);
   EXPECT_NEAR(ate.T_reference_map.x, T.x, 1e-9);
@@ -72,14 +72,41 @@ TEST(Ate, StretchedSquareByHand) {
   // Corners at (+-1, +-1) against (+-1.1, +-1): no rigid motion helps, each corner is 0.1 m off.
   const std::vector<TimedPose> path = {{0, {1, 1, 0}}, {1, {-1, 1, 0}}, {2, {-1, -1, 0}}, {3, {1, -1, 0}}};
   const std::vector<TimedPose> truth = {{0, {1.1, 1, 0}}, {1, {-1.1, 1, 0}}, {2, {-1.1, -1, 0}}, {3, {1.1, -1, 0}}};
-  const AteResult ate = absolute_trajectory_error(path, truth);
+  const AteResult ate = absolute_trajectory_error(associate(path, truth));
   EXPECT_NEAR(ate.error_m.rmse, 0.1, 1e-12);
   EXPECT_NEAR(ate.error_m.min, 0.1, 1e-12);
 }
 
 TEST(Ate, NeedsACommonClock) {
   const std::vector<TimedPose> path = {{0, {}}, {1, {}}}, truth = {{100, {}}, {101, {}}};
-  EXPECT_NE(input_error([&] { absolute_trajectory_error(path, truth); }).find("clock"), std::string::npos);
+  EXPECT_NE(input_error([&] { absolute_trajectory_error(associate(path, truth)); }).find("clock"), std::string::npos);
+}
+
+TEST(Ate, StampsAreAssociatedAsEvoDoes) {
+  // The reference is the shorter list, a few milliseconds off; one of its stamps has no partner.
+  const std::vector<TimedPose> path = {{0.0, {0, 0, 0}}, {0.5, {1, 0, 0}}, {1.0, {2, 0, 0}}, {1.5, {3, 0, 0}}};
+  const std::vector<TimedPose> truth = {{0.004, {0, 0, 0}}, {1.008, {2, 0, 0}}, {1.6, {9, 9, 0}}};
+  const PosePairs pairs = associate(path, truth);
+  EXPECT_FALSE(pairs.interpolated);
+  ASSERT_EQ(pairs.ours.size(), 2u);
+  EXPECT_EQ(pairs.ours[1].x, 2.0);
+  const std::vector<TimedPose> between = {{0.25, {0.5, 0, 0}}, {0.75, {1.5, 0, 0}}, {1.25, {2.5, 0, 0}}};
+  const PosePairs interpolated = associate(path, between);
+  EXPECT_TRUE(interpolated.interpolated);
+  EXPECT_EQ(interpolated.ours.size(), 2u) << "the stamps inside the reference";
+  EXPECT_NEAR(absolute_trajectory_error(interpolated).error_m.max, 0.0, 1e-12);
+}
+
+TEST(Rpe, OneWrongStepByHand) {
+  const std::vector<TimedPose> truth = {{0, {0, 0, 0}}, {1, {1, 0, 0}}, {2, {2, 0, kPi / 2}}, {3, {2, 1, kPi / 2}}};
+  std::vector<TimedPose> path = truth;
+  path[2].pose = {2.1, 0.0, kPi / 2};  // 0.1 m too far; the step after it is 0.1 m too far to the side
+  const RpeResult rpe = relative_pose_error(associate(path, truth));
+  EXPECT_EQ(rpe.matched, 3u);
+  EXPECT_NEAR(rpe.translation_m.max, 0.1, 1e-12);
+  EXPECT_NEAR(rpe.translation_m.min, 0.0, 1e-12);
+  EXPECT_NEAR(rpe.translation_m.rmse, 0.1 * std::sqrt(2.0 / 3.0), 1e-12);
+  EXPECT_NEAR(rpe.rotation_deg.max, 0.0, 1e-9);
 }
 
 TEST(TrajectoryFiles, TumComesBackAndBothFormatsAreToldApart) {

@@ -25,7 +25,7 @@ Outcome slam(const std::vector<LaserScan>& scans, const std::vector<Pose2>& odom
     ours.push_back({scans[i].t, run.poses[i]});
     theirs.push_back({scans[i].t, truth[i]});
   }
-  run.ate_m = absolute_trajectory_error(ours, theirs).error_m.rmse;
+  run.ate_m = absolute_trajectory_error(associate(ours, theirs)).error_m.rmse;
   return run;
 }
 

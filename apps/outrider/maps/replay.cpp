@@ -12,6 +12,7 @@
 #include "report/metrics.hpp"
 #include "report/run_folder.hpp"
 #include "slam_glue/evaluation.hpp"
+#include "slam_glue/map_alignment.hpp"
 #include "slam_glue/map_files.hpp"
 #include "slam_glue/slam.hpp"
 #include "verbs.hpp"
@@ -51,6 +52,10 @@ Json statistics_json(const slam_glue::ErrorStatistics& s) {
   return {{"mean", s.mean}, {"std", s.std}, {"median", s.median}, {"max", s.max}};
 }
 
+Json error_json(const slam_glue::ErrorStatistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std}, {"min", s.min}, {"max", s.max}};
+}
+
 /// What the trajectory is worth: relations, ground truth. Filled into `result`; returns what a person should read.
 std::string evaluate(const Options& o, const std::vector<TimedPose>& trajectory, Json& result) {
   std::string text;
@@ -63,13 +68,19 @@ std::string evaluate(const Options& o, const std::vector<TimedPose>& trajectory,
                         slam_glue::cartographer_lines(errors));
   }
   if (!o.ground_truth.empty()) {
-    const auto ate =
-        slam_glue::absolute_trajectory_error(trajectory, slam_glue::load_trajectory(o.ground_truth));
+    const auto pairs = slam_glue::associate(trajectory, slam_glue::load_trajectory(o.ground_truth));
+    const auto ate = slam_glue::absolute_trajectory_error(pairs);
+    const auto rpe = slam_glue::relative_pose_error(pairs);
     const auto& e = ate.error_m;
-    result["ate_m"] = {{"rmse", e.rmse}, {"mean", e.mean}, {"median", e.median}, {"std", e.std}, {"min", e.min},
-                       {"max", e.max}, {"matched", ate.matched}};
-    text += fmt::format("ATE: rmse {:.3f} m, mean {:.3f} m, median {:.3f} m, max {:.3f} m over {} poses\n", e.rmse,
-                        e.mean, e.median, e.max, ate.matched);
+    result["ate_m"] = error_json(e);
+    result["ate_m"]["matched"] = ate.matched;
+    result["ate_m"]["association"] = pairs.interpolated ? "reference interpolated" : "nearest stamp";
+    result["rpe"] = {{"steps", rpe.matched}, {"translation_m", error_json(rpe.translation_m)},
+                     {"rotation_deg", error_json(rpe.rotation_deg)}};
+    text += fmt::format("ATE: rmse {:.3f} m, mean {:.3f} m, median {:.3f} m, max {:.3f} m over {} poses{}\n", e.rmse,
+                        e.mean, e.median, e.max, ate.matched, pairs.interpolated ? ", reference interpolated" : "");
+    text += fmt::format("RPE: rmse {:.4f} m, {:.3f} deg between neighbouring poses\n", rpe.translation_m.rmse,
+                        rpe.rotation_deg.rmse);
   }
   if (!text.empty() && text.back() != '\n') text += '\n';
   return text;
@@ -81,6 +92,7 @@ report::RunRecord replay_record(const Options& o, const slam_glue::SlamResult& s
   record.verb = "replay";
   record.map = slam.mapper->states();
   report::RobotRecord robot;
+  robot.clock_s = slam.log.first_t;
   robot.spec.name = "robot1";
   robot.spec.range = o.slam.max_range_m;
   if (!slam.trajectory.empty()) robot.spec.start = slam.trajectory.front().pose;
@@ -106,6 +118,38 @@ report::RunRecord replay_record(const Options& o, const slam_glue::SlamResult& s
   record.playback_step_s = slam.playback_step_s;
   record.robots.push_back(std::move(robot));
   return record;
+}
+
+/// Lays the map onto the true one.
+void set_truth(OccupancyGrid truth, report::RunRecord& record) {
+  const auto alignment = slam_glue::align_map(record.map, truth);
+  if (alignment) {
+    const Pose2& T = alignment->T_truth_map;
+    record.T_truth_map = T;
+    record.alignment = {{"transform", {T.x, T.y, T.theta}}, {"score", alignment->score},
+                        {"rival_score", alignment->rival}, {"moved", alignment->found}};
+  }
+  record.truth = std::move(truth);
+}
+
+/// The map beside the truth, in words.
+std::string quality_lines(const Json& result) {
+  if (!result.contains("map_quality")) return "";
+  const Json& q = result["map_quality"];
+  const Json& near = q["within_tolerance"];
+  std::string text;
+  if (q.contains("alignment")) {
+    const Json& T = q["alignment"]["transform"];
+    text = fmt::format("Map laid onto the true one at x {:.2f} m, y {:.2f} m, {:.1f} deg: fit {:.2f}, next best {:.2f}\n",
+                       T[0].get<double>(), T[1].get<double>(), T[2].get<double>() * 180.0 / kPi,
+                       q["alignment"]["score"].get<double>(), q["alignment"]["rival_score"].get<double>());
+  }
+  return text + fmt::format("Map quality: IoU {:.3f} of walls, {:.3f} of free space; accuracy {:.3f}; within {:.2f} m: "
+                            "precision {:.3f}, recall {:.3f}; walls {:.3f} m off in the mean; {:.1f} % complete\n",
+                            q["iou_occupied"].get<double>(), q["iou_free"].get<double>(), q["accuracy"].get<double>(),
+                            near["tolerance_m"].get<double>(), near["precision"].get<double>(),
+                            near["recall"].get<double>(), q["wall_to_truth_m"]["mean"].get<double>(),
+                            100.0 * q["completeness"].get<double>());
 }
 
 void write_replay_maps(const slam_glue::SlamResult& slam, const std::filesystem::path& folder) {
@@ -148,9 +192,12 @@ Json result_of(const slam_glue::SlamResult& slam, const std::string& method) {
     slam_json["closure_residual_deg"] = statistics_json(slam_glue::statistics(degrees));
   }
   slam_json["closures"] = closures_json(slam);
+  const auto& c = slam.consistency;
+  Json consistency{{"scans", c.scans}, {"end_points_agree", c.end_points_agree}, {"seen_through", c.seen_through},
+                   {"doubled_walls", c.doubled_walls}};
   return {{"status", slam.interrupted ? "interrupted" : "mapped"}, {"scans", slam.scans},
           {"duration_s", slam.log.duration_s()}, {"path_m", slam.path_m}, {"slam", std::move(slam_json)},
-          {"warnings", slam.warnings}};
+          {"self_consistency", std::move(consistency)}, {"warnings", slam.warnings}};
 }
 
 void replay(Options& o, Context& ctx) {
@@ -176,7 +223,7 @@ void replay(Options& o, Context& ctx) {
   record.version = OUTRIDER_VERSION;
   record.command = ctx.argv;
   record.seed = ctx.seed;
-  record.truth = std::move(truth);
+  if (truth) set_truth(std::move(*truth), record);
   record.configuration = {{"log", o.logs.front().string()}, {"slam", o.slam.method},
                           {"resolution_m", o.slam.resolution}, {"max_range_m", o.slam.max_range_m}};
   record.result = result_of(slam, o.slam.method);
@@ -185,8 +232,9 @@ void replay(Options& o, Context& ctx) {
                    {"realtime_factor", slam.log.duration_s() / wall_s}};
   if (!ctx.out.empty())
     report::write_run_folder(record, ctx.out, {ctx.force}, [&](const auto& dir) { write_replay_maps(slam, dir); });
-  if (ctx.json) fmt::print("{}\n", report::run_json(record).dump(2));
-  else if (!ctx.quiet) print_summary(slam, evaluation, wall_s, o.slam.method, ctx);
+  const Json document = report::run_json(record);
+  if (ctx.json) fmt::print("{}\n", report::to_text(document, 2));
+  else if (!ctx.quiet) print_summary(slam, evaluation + quality_lines(document["result"]), wall_s, o.slam.method, ctx);
   ctx.exit_code = slam.interrupted ? kInterrupted : kDone;
 }
 
@@ -209,7 +257,7 @@ void add_replay(CLI::App& app, Context& ctx) {
   verb->add_option("--relations", o->relations, "relations to compare with (Kuemmerle et al. 2009)")->type_name("FILE");
   verb->add_option("--ground-truth", o->ground_truth, "true trajectory: TUM, or lines of t x y theta")
       ->type_name("FILE");
-  verb->add_option("--true-map", o->true_map, "true map in the frame of the result, for map quality")->type_name("MAP");
+  verb->add_option("--true-map", o->true_map, "true map, for map quality; the map is aligned with it")->type_name("MAP");
   verb->add_option("--start", o->starts, "\"x,y,theta\": pose of the robot at the first scan [m, rad]")->type_name("POSE");
   verb->add_flag("--unknown-starts", o->unknown_starts, "find out how several logs fit together (to come)");
   add_run_flags(*verb, ctx);
