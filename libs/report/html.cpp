@@ -80,6 +80,29 @@ std::string closures_html(const Json& result) {
   return html + "</tbody></table>\n</section>\n";
 }
 
+/// How several logs came together; nothing for other runs.
+std::string merge_html(const Json& result) {
+  if (!result.contains("merge") || !result["merge"].is_array() || result["merge"].empty()) return "";
+  std::string rows;
+  for (const Json& m : result["merge"]) {
+    const Json T = m.value("transform", Json());
+    const bool pose = T.is_array() && T.size() == 3 && T[0].is_number() && T[1].is_number() && T[2].is_number();
+    const std::string why = plain_text(m.value("why", Json("")));
+    rows += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{:.1f} %</td>"
+        "<td class=\"number\">{:.1f} %</td></tr>\n",
+        escape_html(plain_text(m.value("robot", Json("")))),
+        escape_html((m.value("accepted", false) ? "yes" : "no") + (why.empty() ? "" : ": " + why)),
+        pose && m.value("accepted", false) ? fmt::format("({:.2f}, {:.2f}) m, {:.1f}°", T[0].get<double>(),
+                                                         T[1].get<double>(), T[2].get<double>() * 180.0 / kPi)
+                                           : "",
+        m.value("closures", 0), 100.0 * m.value("score", 0.0), 100.0 * m.value("hit_ratio", 0.0));
+  }
+  return "<section>\n<h2>How the logs came together</h2>\n<table class=\"list\"><thead><tr><th>robot</th><th>merged</th>"
+         "<th>starts at</th><th class=\"number\">closures with others</th><th class=\"number\">seen alike</th>"
+         "<th class=\"number\">points on walls</th></tr></thead><tbody>\n" + rows + "</tbody></table>\n</section>\n";
+}
+
 /// Nested keys as "a.b"; lists on one line.
 void flatten(const Json& json, const std::string& prefix, std::string& rows) {
   if (json.is_object() && !json.empty()) {
@@ -190,7 +213,8 @@ std::string report_html(const RunRecord& record) {
                                            {"verdict", escape_html(verdict(run))},
                                            {"style", std::string(style_sheet())},
                                            {"figures", figures_html(run)},
-                                           {"left", left_html(run["result"]) + closures_html(run["result"])},
+                                           {"left", left_html(run["result"]) + merge_html(run["result"]) +
+                                                        closures_html(run["result"])},
                                            {"configuration", configuration_html(run)},
                                            {"command", escape_html(shell_command(record.command))},
                                            {"version", escape_html(record.version)},

@@ -160,7 +160,8 @@ void derive_team(const RunRecord& record, Json& derived) {
 
 void derive_overlap(const RunRecord& record, Json& derived) {
   const auto areas = seen_areas(record.robots);
-  if (!areas) return;
+  const auto pairs = pair_overlaps(record.robots);
+  if (!areas || !pairs) return;
   const double reachable = record.result.is_object() ? record.result.value("reachable_m2", 0.0) : 0.0;
   const double whole = reachable > 0.0 ? reachable : areas->explored();
   derived["overlap"] = {{"fraction", areas->overlap_fraction()},
@@ -169,7 +170,7 @@ void derive_overlap(const RunRecord& record, Json& derived) {
   Json& overlap = derived["overlap"];
   const auto name = [&](std::size_t i) { return record.robots[i].spec.name; };
   overlap["pairs"] = Json::array();
-  for (const PairOverlap& pair : *pair_overlaps(record.robots))
+  for (const PairOverlap& pair : *pairs)
     overlap["pairs"].push_back(
         {{"robots", {name(pair.a), name(pair.b)}}, {"m2", pair.m2}, {"share_of_smaller", pair.share_of_smaller}});
   const std::vector<double> wasted = wasted_m(record);

@@ -58,7 +58,8 @@ Json robots_json(const RunRecord& record) {
     robots.push_back({{"name", robot.spec.name},
                       {"range", rounded(robot.spec.range, 100.0)},
                       {"radius", rounded(robot.spec.radius, 100.0)},
-                      {"path", path_json(robot.trajectory, t0 + robot.clock_s, most)}});
+                      {"path", path_json(robot.in_team_frame ? robot.trajectory : std::vector<TimedPose>(),
+                                         t0 + robot.clock_s, most)}});
   return robots;
 }
 
@@ -100,7 +101,10 @@ Json map_json(const RunRecord& record) {
   if (record.known_since.geometry() == g) map["known_since"] = layer(record.known_since.data());
   const auto counts = seen_counts(record.robots);
   if (counts && counts->geometry() == g && record.robots.size() > 1) map["seen"] = layer(counts->data());
-  if (record.truth) map["errors"] = layer(map_errors(record.map, *record.truth, record.T_truth_map).data());
+  if (record.truth) {
+    map["errors"] = layer(map_errors(record.map, *record.truth, record.T_truth_map).data());
+    map["truth"] = layer(resampled(*record.truth, g, inverse(record.T_truth_map)).data());
+  }
   return map;
 }
 

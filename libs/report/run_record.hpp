@@ -28,6 +28,7 @@ struct RobotRecord {
   std::optional<OccupancyGrid> map;   ///< its own map at the end
   Grid<std::uint8_t> seen;            ///< 1 where this robot's own sensor saw the cell; empty grid = unknown
   double first_seen_m2 = 0.0;         ///< area that this robot was the first of the team to see [m^2]
+  bool in_team_frame = true;          ///< false: its trajectory and map could not be placed in the team's map
   double clock_s = 0.0;               ///< stamp of the trajectory at time 0 of the timeline [s]
 };
 

@@ -175,7 +175,7 @@ class GraphLocalizer : public Localizer {
   void finish() override { slam_.finish(); }
   std::vector<Pose2> poses() const override { return slam_.poses(); }
   std::size_t keyframes() override { return slam_.graph().size(); }
-  std::vector<ClosureRecord> closures() const override { return records(slam_.graph(), slam_.closures()); }
+  std::optional<SessionGraph> take_graph() override { return SessionGraph{slam_.graph(), slam_.closures()}; }
 
  private:
   GraphSlam slam_;
@@ -193,7 +193,8 @@ std::vector<ClosureRecord> records(const KeyframeGraph& graph, const std::vector
   std::vector<ClosureRecord> all;
   for (const LoopClosure& c : closures) {
     const Pose2 r = residual({c.from, c.to, c.T_from_to}, graph.poses);
-    all.push_back({graph.frames[c.from].t, graph.frames[c.to].t, c.T_from_to, std::hypot(r.x, r.y),
+    const Keyframe &from = graph.frames[c.from], &to = graph.frames[c.to];
+    all.push_back({from.session, to.session, from.t, to.t, c.T_from_to, std::hypot(r.x, r.y),
                    std::abs(r.theta) * 180.0 / kPi, c.share, c.agreement, c.accepted(), c.why});
   }
   return all;

@@ -70,22 +70,23 @@ std::vector<SurfacePoint> KeyframeGraph::gather(std::size_t begin, std::size_t e
   return points;
 }
 
-Visibility judge(const KeyframeGraph& graph, std::size_t begin, std::size_t end, std::size_t of,
-                 std::span<const SurfacePoint> points) {
+Visibility judge(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of,
+                 std::span<const SurfacePoint> points, std::vector<bool>* agrees) {
   Visibility v;
   v.points = points.size();
   std::vector<Pose2> T_sensor_of;
-  for (std::size_t i = begin; i < end; ++i)
+  for (const std::size_t i : frames)
     T_sensor_of.push_back(inverse(graph.poses[i] * graph.frames[i].scan.T_robot_sensor) * graph.poses[of]);
   for (const auto& q : points) {
     bool conflict = false, agree = false;
-    for (std::size_t i = begin; i < end && !agree; ++i) {
-      const Verdict said = verdict(graph.frames[i].scan, T_sensor_of[i - begin] * q.p);
+    for (std::size_t n = 0; n < frames.size() && !agree; ++n) {
+      const Verdict said = verdict(graph.frames[frames[n]].scan, T_sensor_of[n] * q.p);
       agree = said == Verdict::kAgrees;
       conflict = conflict || said == Verdict::kConflicts;
     }
     if (agree) ++v.agree;
     else if (conflict) ++v.conflict;
+    if (agrees) agrees->push_back(agree);
   }
   return v;
 }

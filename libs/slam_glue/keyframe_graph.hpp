@@ -47,9 +47,9 @@ struct Visibility {
   }
 };
 
-/// Judges points, given in the frame of keyframe `of`, by the scans of the frames [begin, end): a point agrees when some
-/// scan ends near it, conflicts when none does and one passes through it. O(points * frames).
-Visibility judge(const KeyframeGraph& graph, std::size_t begin, std::size_t end, std::size_t of,
-                 std::span<const SurfacePoint> points);
+/// Judges points, given in the frame of keyframe `of`, by the scans of `frames`: a point agrees when some scan ends near
+/// it, conflicts when none does and one passes through it. `agrees`: the verdict on each point. O(points * frames).
+Visibility judge(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of,
+                 std::span<const SurfacePoint> points, std::vector<bool>* agrees = nullptr);
 
 }  // namespace outrider::slam_glue

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "slam_glue/joint_graph.hpp"
 #include "slam_glue/slam.hpp"
 
 namespace outrider::slam_glue {
@@ -21,7 +23,8 @@ class Localizer {
   virtual std::vector<Pose2> poses() const = 0;
   /// Scans in the SLAM's own map so far.
   virtual std::size_t keyframes() = 0;
-  virtual std::vector<ClosureRecord> closures() const { return {}; }
+  /// The pose graph behind the poses, for methods that have one; once, after finish().
+  virtual std::optional<SessionGraph> take_graph() { return std::nullopt; }
 };
 
 /// Each keyframe makes MRPT rebuild the search tree of its map, so keyframes are few and the map thin: with 2.5 times

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <queue>
 
 #include "slam_glue/correlative.hpp"
@@ -23,6 +24,12 @@ constexpr double kLoopCost = 0.3;      // a closure's own error, in metres of dr
 constexpr std::size_t kMostCandidates = 2, kApartFrames = 8;
 
 double magnitude(const Pose2& T) { return std::hypot(T.x, T.y); }
+
+std::vector<std::size_t> range(std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> all(end - begin);
+  std::iota(all.begin(), all.end(), begin);
+  return all;
+}
 
 }  // namespace
 
@@ -50,12 +57,13 @@ std::vector<double> LoopCloser::drift_from(const KeyframeGraph& graph, std::size
 }
 
 std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std::size_t k,
-                                                const std::vector<double>& way) const {
+                                                const std::vector<double>& way, bool other_sessions) const {
   const Keyframe& frame = graph.frames[k];
   const Point view = graph.poses[k] * frame.view;
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t j = 0; j < graph.size(); ++j) {
     const Keyframe& other = graph.frames[j];
+    if (other_sessions && other.session == frame.session) continue;
     if (other.session == frame.session && std::abs(frame.path_m - other.path_m) < settings_.recent_m) continue;
     if (!std::isfinite(way[j])) continue;
     const double radius = std::min(settings_.most_radius_m, settings_.drift_m * way[j]);
@@ -74,7 +82,7 @@ std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std:
   return chosen;
 }
 
-std::optional<LoopClosure> LoopCloser::try_candidate(KeyframeGraph& graph, std::size_t j, std::size_t k, double way) {
+std::optional<LoopClosure> LoopCloser::check(KeyframeGraph& graph, std::size_t j, std::size_t k, double way) {
   const auto [begin, end] = graph.neighbours(j, kVisit, kVisit);
   const auto [first, last] = graph.neighbours(k, kLooking, 0);
   const auto target = graph.gather(begin, end, j);
@@ -105,14 +113,15 @@ std::optional<LoopClosure> LoopCloser::try_candidate(KeyframeGraph& graph, std::
                            graph.poses.begin() + static_cast<std::ptrdiff_t>(last));
   for (std::size_t i = first; i < last; ++i)
     graph.poses[i] = graph.poses[j] * match.T_map_robot * (inverse(kept) * moved[i - first]);
-  const Visibility there = judge(graph, begin, end, k, source);
-  const Visibility back = judge(graph, first, last, j, thinned(target, kSearchCell));
+  const Visibility there = judge(graph, range(begin, end), k, source);
+  const Visibility back = judge(graph, range(first, last), j, thinned(target, kSearchCell));
   std::copy(moved.begin(), moved.end(), graph.poses.begin() + static_cast<std::ptrdiff_t>(first));
   closure.agreement = std::min(there.agreement(), back.agreement());
   if (closure.share < settings_.least_share) return std::nullopt;
   if (closure.agreement < settings_.least_agreement)
     closure.why = "one visit looked through what the other saw";
-  else if (closure.why.empty() && (closure.correction_m > settings_.small_m || turned > settings_.small_rad))
+  else if (closure.why.empty() && (closure.agreement < settings_.sure_agreement ||
+                                   closure.correction_m > settings_.small_m || turned > settings_.small_rad))
     closure.why = "no second witness";
   return closure;
 }
@@ -136,11 +145,15 @@ void LoopCloser::accept(KeyframeGraph& graph, const LoopClosure& closure) {
   accepted_.back().why.clear();
 }
 
-bool LoopCloser::look(KeyframeGraph& graph, std::size_t k) {
+void LoopCloser::adopt(const std::vector<LoopClosure>& closures) {
+  for (const LoopClosure& c : closures) (c.accepted() ? accepted_ : refused_).push_back(c);
+}
+
+bool LoopCloser::look(KeyframeGraph& graph, std::size_t k, bool other_sessions) {
   const std::vector<double> way = drift_from(graph, k);
   bool news = false;
-  for (const std::size_t j : candidates(graph, k, way)) {
-    const auto closure = try_candidate(graph, j, k, way[j]);
+  for (const std::size_t j : candidates(graph, k, way, other_sessions)) {
+    const auto closure = check(graph, j, k, way[j]);
     if (!closure) continue;
     if (closure->accepted()) {
       accept(graph, *closure);
@@ -164,9 +177,8 @@ bool LoopCloser::look(KeyframeGraph& graph, std::size_t k) {
   return news;
 }
 
-void LoopCloser::optimise(KeyframeGraph& graph) {
+void LoopCloser::optimise(KeyframeGraph& graph, const std::vector<std::size_t>& fixed) {
   constexpr double kWrongM = 0.3, kWrongRad = 0.06;
-  const std::vector<std::size_t> fixed{0};
   for (int round = 0; round < 4; ++round) {
     slam_glue::optimise(graph.poses, graph.edges, fixed);
     bool dropped = false;

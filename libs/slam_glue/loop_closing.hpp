@@ -26,7 +26,8 @@ struct LoopSettings {
   double least_radius_m = 0.4, most_radius_m = 12.0;
   double view_m = 3.0;             ///< two scans look at the same place when the middles of their views are this near
   double recent_m = 6.0;           ///< the way back that is the local map's business, not a loop
-  double least_share = 0.45, least_agreement = 0.88;
+  double least_share = 0.45, least_agreement = 0.75;
+  double sure_agreement = 0.88;    ///< from here on a small correction needs no second witness
   double rival = 0.9;              ///< a second place that fits at least so well (share of the best score): ambiguous
   double small_m = 0.3, small_rad = 0.06;  ///< corrections that need no second witness
   double witness_m = 1.5;          ///< way between a candidate and its witness
@@ -36,23 +37,31 @@ class LoopCloser {
  public:
   explicit LoopCloser(const LoopSettings& settings) : settings_(settings) {}
 
-  /// Looks for earlier visits of what keyframe `k` sees and adds edges for those that are believed. Returns whether the
-  /// graph should be optimised now.
-  bool look(KeyframeGraph& graph, std::size_t k);
+  /// Looks for earlier visits of what keyframe `k` sees and adds edges for those that are believed; with `other_sessions`
+  /// only for visits by other robots. Returns whether the graph should be optimised now.
+  bool look(KeyframeGraph& graph, std::size_t k, bool other_sessions = false);
+
+  /// One pair of keyframes, `way` metres of driving apart: searched for, matched and checked, but not believed yet.
+  /// Absent when there is nothing like it.
+  std::optional<LoopClosure> check(KeyframeGraph& graph, std::size_t j, std::size_t k, double way);
+
+  /// Adds the closure's edge.
+  void accept(KeyframeGraph& graph, const LoopClosure& closure);
+
+  /// Takes over what was found before; the edges are in the graph already.
+  void adopt(const std::vector<LoopClosure>& closures);
 
   /// Optimises; loop edges that disagree with the rest afterwards are dropped, and it is optimised again.
-  void optimise(KeyframeGraph& graph);
+  void optimise(KeyframeGraph& graph, const std::vector<std::size_t>& fixed = {0});
 
   /// Everything that came near to being a loop; candidates without a witness are refused for good.
   std::vector<LoopClosure> closures(const KeyframeGraph& graph) const;
 
  private:
-  struct Region;
   std::vector<double> drift_from(const KeyframeGraph& graph, std::size_t k) const;
-  std::vector<std::size_t> candidates(const KeyframeGraph& graph, std::size_t k, const std::vector<double>& way) const;
-  std::optional<LoopClosure> try_candidate(KeyframeGraph& graph, std::size_t j, std::size_t k, double way);
+  std::vector<std::size_t> candidates(const KeyframeGraph& graph, std::size_t k, const std::vector<double>& way,
+                                      bool other_sessions) const;
   bool witness(const KeyframeGraph& graph, const LoopClosure& a, const LoopClosure& b) const;
-  void accept(KeyframeGraph& graph, const LoopClosure& closure);
 
   LoopSettings settings_;
   std::vector<LoopClosure> accepted_, refused_, pending_;

@@ -23,6 +23,7 @@ LoadedMap load_map(const std::filesystem::path& file, const MapLoadOptions& opti
 
   if (suffix == ".yaml" || suffix == ".yml") return {load_ros_map(file), {}};
   if (suffix == ".gridmap" || name.ends_with(".gridmap.gz")) return {load_gridmap(file), {}};
+  if (suffix == ".dat" || name.ends_with(".dat.gz")) return {load_beesoft(file), {}};
   if (suffix == ".map") return {load_moving_ai(file, options.resolution.value_or(1.0)), {}};
   if (suffix == ".txt") return load_ascii(file, options.resolution.value_or(1.0));
   if (suffix == ".png" || suffix == ".pgm" || suffix == ".jpg" || suffix == ".jpeg" || suffix == ".bmp") {
@@ -31,7 +32,7 @@ LoadedMap load_map(const std::filesystem::path& file, const MapLoadOptions& opti
     return {load_image_map(file, *options.resolution), {}};
   }
   throw InputError(
-      fmt::format("{}: unknown map format; expected .yaml, .png, .pgm, .jpg, .bmp, .gridmap[.gz], .map or .txt", name));
+      fmt::format("{}: unknown map format; expected .yaml, .png, .pgm, .jpg, .bmp, .gridmap[.gz], .map, .dat[.gz] or .txt", name));
 }
 
 }  // namespace outrider::slam_glue

@@ -1,5 +1,5 @@
 #pragma once
-// Internal: the two text formats behind load_map.
+// Internal: the text formats behind load_map.
 
 #include <filesystem>
 
@@ -11,6 +11,8 @@ namespace outrider::slam_glue {
 inline constexpr std::uint64_t kMostCells = 400'000'000;
 
 LoadedMap load_ascii(const std::filesystem::path& file, double resolution);
+/// Beesoft's .dat[.gz]: header with the resolution in cm, then P(free) or -1, column by column. Origin at (0, 0).
+OccupancyGrid load_beesoft(const std::filesystem::path& file);
 OccupancyGrid load_moving_ai(const std::filesystem::path& file, double resolution);
 
 }  // namespace outrider::slam_glue

@@ -67,15 +67,16 @@ TEST_F(PackagedRawlog, SameSeedSameMap) {
     options.resolution = 0.1;
     options.particles = 3;
     const auto run = [&] {
-      return run_slam(test::packaged_rawlog(), options, [](const SlamProgress& p) { return p.scans < 40; });
+      const std::filesystem::path log = test::packaged_rawlog();
+      return run_slam({&log, 1}, options, {}, [](const SlamProgress& p) { return p.scans < 40; });
     };
-    const SlamResult a = run(), b = run();
+    const TeamSlamResult a = run(), b = run();
     EXPECT_TRUE(a.interrupted);
-    EXPECT_EQ(a.scans, 40u);
-    EXPECT_EQ(a.trajectory, b.trajectory);
-    EXPECT_EQ(a.mapper->states(), b.mapper->states());
-    a.mapper->save(dir_ / "a.gridmap");
-    b.mapper->save(dir_ / "b.gridmap");
+    EXPECT_EQ(a.logs[0].scans, 40u);
+    EXPECT_EQ(a.logs[0].trajectory, b.logs[0].trajectory);
+    EXPECT_EQ(a.team.mapper->states(), b.team.mapper->states());
+    a.team.mapper->save(dir_ / "a.gridmap");
+    b.team.mapper->save(dir_ / "b.gridmap");
     EXPECT_EQ(test::bytes_of(dir_ / "a.gridmap"), test::bytes_of(dir_ / "b.gridmap"));
   }
 }
@@ -99,18 +100,20 @@ TEST(Rawlog, GarbageAndEmptyFilesAreRefused) {
 TEST(Slam, UnknownMethodIsNamedWithASuggestion) {
   SlamOptions options;
   options.method = "ipc";
-  EXPECT_NE(input_error([&] { run_slam("log", options); }).find("icp"), std::string::npos);
+  const std::filesystem::path log = "log";
+  EXPECT_NE(input_error([&] { run_slam({&log, 1}, options); }).find("icp"), std::string::npos);
 }
 
 TEST(Slam, CsailStaysNearItsRelations) {
   // Scan matching as published (Kuemmerle et al. 2009) is at 0.106 m; a first part keeps the test quick.
-  const auto file = test::shared_log("csail/csail.clf.gz");
+  const std::filesystem::path file = test::shared_log("csail/csail.clf.gz");
   SKIP_WITHOUT(file);
   SlamOptions options;
   options.resolution = 0.2;
-  const SlamResult r = run_slam(file, options, [](const SlamProgress& p) { return p.scans < 500; });
-  EXPECT_EQ(r.scans, 500u);
-  EXPECT_TRUE(r.warnings.empty());
+  const TeamSlamResult r = run_slam({&file, 1}, options, {}, [](const SlamProgress& p) { return p.scans < 500; });
+  EXPECT_EQ(r.logs[0].scans, 500u);
+  EXPECT_TRUE(r.logs[0].warnings.empty());
+  EXPECT_GT(r.team.consistency.end_points_agree, 0.85);
 }
 
 }  // namespace

@@ -178,11 +178,25 @@ function goalsFrom(events, robots) {
 async function loadImage(map) {
   if (!map) return null;
   const bytes = async (text) => (text ? unpack(text) : null);
-  const [state, since, seen, wrong] = await Promise.all([map.state, map.known_since, map.seen, map.errors].map(bytes));
+  const [state, since, seen, wrong, truth] =
+    await Promise.all([map.state, map.known_since, map.seen, map.errors, map.truth].map(bytes));
   const view = (buffer, Type) => buffer && new Type(buffer);
   return new MapImage(map, {
-    state: view(state, Uint8Array), since: view(since, Uint16Array), seen: view(seen, Uint8Array), wrong: view(wrong, Uint8Array),
+    state: view(state, Uint8Array), since: view(since, Uint16Array), seen: view(seen, Uint8Array),
+    wrong: view(wrong, Uint8Array), truth: view(truth, Uint8Array),
   });
+}
+
+/** The finished map with its errors, and the truth beside it. */
+function drawQuality({ map, layers: { state, wrong, truth } }) {
+  if (!wrong || !truth) return;
+  for (const [name, layers, errors] of [["found", { state, wrong }, true], ["truth", { state: truth }, false]]) {
+    const still = new MapImage(map, layers);
+    still.paint(Infinity, false, errors);
+    still.canvas.className = "still";
+    byId(`${name}-figure`).prepend(still.canvas);
+    byId(`${name}-figure`).hidden = false;
+  }
 }
 
 function addTools(view, data) {
@@ -222,6 +236,7 @@ function addTools(view, data) {
   const view = new MapView(byId("map"), data, image);
   view.goals = goalsFrom(events, data.robots);
   addTools(view, data);
+  if (image) drawQuality(image);
   player = new Player(data.duration, [(time) => { view.time = time; view.draw(); }, (time) => curve.setTime(time)]);
   byId("events").hidden = events.length === 0;
   if (events.length) new EventTable(events, data.events, (time) => { seek(time); byId("map").scrollIntoView({ block: "center" }); });
