@@ -35,8 +35,17 @@ MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, co
   settings.coordination.cluster_spacing =
       std::min_element(team.begin(), team.end(), [](const auto& a, const auto& b) { return a.range < b.range; })->range;
   settings.explorer.return_home = o.return_home;
-  settings.sim.lidar = o.sensing == "lidar";
+  settings.localization = o.localization == "slam"       ? explorer::Localization::kSlam
+                          : o.localization == "odometry" ? explorer::Localization::kOdometry
+                                                         : explorer::Localization::kPerfect;
+  auto& noise = settings.odometry;
+  noise.shift_per_sqrt_m *= o.odometry_noise;
+  noise.turn_per_sqrt_m *= o.odometry_noise;
+  noise.turn_per_sqrt_rad *= o.odometry_noise;
+  settings.sim.lidar = o.sensing == "lidar" || settings.localization != explorer::Localization::kPerfect;
   if (settings.sim.lidar) settings.make_mapper = std::bind_front(&MapsModule::make_scan_mapper, &maps_module());
+  if (settings.localization == explorer::Localization::kSlam)
+    settings.make_tracking = std::bind_front(&MapsModule::make_pose_tracking, &maps_module());
   settings.sim.range_noise = o.range_noise;
   settings.sim.seed = seed;
   settings.until = o.until;
@@ -50,8 +59,9 @@ MissionSettings mission_settings(const ExploreOptions& o, std::uint64_t seed, co
 namespace {
 
 Json configuration(const ExploreOptions& o, const MissionSettings& s) {
-  return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms}, {"sensing", o.sensing},
-          {"localization", o.localization}, {"starts", o.starts}, {"until", o.until}, {"max_time_s", o.max_time},
+  return {{"world", o.world}, {"coordinator", o.coordinator}, {"comms", o.comms},
+          {"sensing", s.sim.lidar ? "lidar" : "disc"}, {"localization", o.localization},
+          {"odometry_noise", o.odometry_noise}, {"starts", o.starts}, {"until", o.until}, {"max_time_s", o.max_time},
           {"return_home", o.return_home}, {"fault", o.fault}, {"step_s", s.sim.dt}, {"range_noise_m", o.range_noise},
           {"scan_rate_hz", s.sim.scan_rate}, {"bids", auction::bid_options_text(o.bids)}};
 }
@@ -195,8 +205,12 @@ void add_team_options(CLI::App& verb, ExploreOptions& o) {
 
 void add_explore_options(CLI::App& verb, ExploreOptions& o) {
   add_team_options(verb, o);
-  verb.add_option("--localization", o.localization, "perfect (odometry and slam are to come)")
-      ->check(CLI::IsMember({"perfect"}))->capture_default_str()->type_name("KIND");
+  verb.add_option("--localization", o.localization, "perfect; odometry: wheels that slip; slam: scan matching "
+                   "against the own map corrects them. The last two sense with a lidar")
+      ->check(CLI::IsMember({"perfect", "odometry", "slam"}))->capture_default_str()->type_name("KIND");
+  verb.add_option("--odometry-noise", o.odometry_noise, "how much the wheels slip, times the usual "
+                   "0.03 m, 0.02 rad after 1 m and 0.03 rad after 1 rad")
+      ->check(number_in(0.0, 100.0))->capture_default_str()->type_name("FACTOR");
   verb.add_option("--until", o.until, "stop when this fraction of the reachable area has been seen")
       ->check(number_in(0.01, 1.0))->capture_default_str()->type_name("FRACTION");
   verb.add_option("--fault", o.fault, "kill:ROBOT@T, revive:ROBOT@T, slow:ROBOT@T:FACTOR, deaf:ROBOT@T0-T1; "

@@ -23,6 +23,7 @@ struct ExploreOptions {
   std::filesystem::path team_file;
   std::string coordinator = "daa", comms = "ideal", sensing = "disc", localization = "perfect", fault;
   std::string starts = "world";
+  double odometry_noise = 1.0;  ///< times explorer::OdometryNoise
   double until = 1.0, max_time = 0.0, range_noise = 0.0;
   bool return_home = false, octomap = false;
   auction::BidParameters bids;

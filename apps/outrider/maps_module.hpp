@@ -10,6 +10,7 @@
 
 #include "context.hpp"
 #include "explorer/explorer.hpp"
+#include "explorer/localized_body.hpp"
 #include "report/run_record.hpp"
 #include "slam_glue/map_files.hpp"
 #include "speed_works.hpp"
@@ -37,6 +38,8 @@ class MapsModule {
   /// See explorer::make_scan_mapper.
   virtual std::unique_ptr<explorer::ScanMapper> make_scan_mapper(const GridGeometry& geometry,
                                                                  const RobotSpec& spec) const = 0;
+  /// See explorer::make_pose_tracking.
+  virtual explorer::PoseTracking make_pose_tracking(const RobotSpec& spec) const = 0;
   /// What `bench speed` times; some references are OpenCV's.
   virtual std::vector<Work> speed_works() const = 0;
 };

@@ -151,6 +151,15 @@ void add_auction_gap(Json& json, const std::vector<Json>& events) {
                       {"gap", least > 0.0 ? Json(milli(travel / least - 1.0)) : Json()}};
 }
 
+/// How far each robot was from where it believed itself to be; null when all knew.
+Json localization_json(const std::vector<explorer::MissionRobot>& robots) {
+  Json json;
+  for (const explorer::MissionRobot& robot : robots)
+    if (const auto& e = robot.localization)
+      json[robot.spec.name] = {{"rmse_m", milli(e->rmse_m)}, {"max_m", milli(e->max_m)}, {"last_m", milli(e->last_m)}};
+  return json;
+}
+
 }  // namespace
 
 report::RunRecord mission_record(explorer::MissionResult&& result, const explorer::MissionSettings& settings,
@@ -160,6 +169,8 @@ report::RunRecord mission_record(explorer::MissionResult&& result, const explore
   record.coordinator = settings.coordinator;
   record.result = result_json(result);
   add_lower_bound(record.result, result, settings, truth);
+  const Json localization = localization_json(result.robots);
+  if (!localization.is_null()) record.result["localization_error"] = localization;
   for (explorer::MissionRobot& robot : result.robots)
     record.robots.push_back({robot.spec, std::move(robot.trajectory), std::move(robot.map), std::move(robot.seen),
                              robot.first_seen_m2});

@@ -11,6 +11,18 @@ namespace {
 
 constexpr int kMostMailRounds = 64;  // of messages answering messages within one step
 
+/// Localisation errors of one robot so far.
+struct ErrorSums {
+  double squares = 0.0, max = 0.0, last = 0.0, count = 0.0;
+  void note(double error_m) {
+    squares += error_m * error_m;
+    max = std::max(max, error_m);
+    last = error_m;
+    count += 1.0;
+  }
+  LocalizationError summary() const { return {count > 0.0 ? std::sqrt(squares / count) : 0.0, max, last}; }
+};
+
 /// The running mission: owns world, radio and minds; one step after the other.
 class Mission {
  public:
@@ -28,10 +40,22 @@ class Mission {
     for (std::size_t r = 0; r < team.size(); ++r) {
       const auto id = static_cast<RobotId>(r);
       robots_.push_back(std::make_unique<Explorer>(
-          id, team[r], truth.geometry(), settings.explorer, simulator_.body(id), ether_.endpoint(id),
+          id, team[r], truth.geometry(), settings.explorer, body_of(id), ether_.endpoint(id),
           settings.sim.lidar ? settings.make_mapper(truth.geometry(), team[r]) : nullptr,
           make_coordinator(settings.coordinator, settings.coordination), sink));
     }
+  }
+
+  /// The simulator's body, or what stands between it and a mind that has to localise itself.
+  Body& body_of(RobotId id) {
+    if (settings_.localization == Localization::kPerfect) return simulator_.body(id);
+    const std::uint64_t stream = settings_.sim.seed * 1'000'003 + static_cast<std::uint64_t>(id);
+    const RobotSpec& spec = simulator_.team()[static_cast<std::size_t>(id)];
+    PoseTracking tracking;
+    if (settings_.localization == Localization::kSlam) tracking = settings_.make_tracking(spec);
+    localized_.push_back(std::make_unique<LocalizedBody>(simulator_.body(id), spec, std::move(tracking), settings_.odometry, stream));
+    errors_.emplace_back();
+    return *localized_.back();
   }
 
   MissionResult run(const MissionProgress& progress) {
@@ -74,6 +98,8 @@ class Mission {
     exchange();
     for (RobotId id = 0; id < static_cast<RobotId>(robots_.size()); ++id)
       referee_.stands(id, {now_s_, simulator_.pose(id)});
+    for (std::size_t r = 0; r < localized_.size(); ++r)
+      errors_[r].note(distance(localized_[r]->believed().position(), simulator_.pose(static_cast<RobotId>(r)).position()));
     referee_.tick(now_s_);
     count_interactions();
   }
@@ -187,6 +213,7 @@ class Mission {
       maps.push_back(robots_[r]->map());
       result_.robots.push_back(referee_.robot(static_cast<RobotId>(r)));
       result_.robots.back().map = robots_[r]->map();
+      if (!localized_.empty()) result_.robots.back().localization = errors_[r].summary();
       result_.robots.back().path_m = simulator_.path_m(static_cast<RobotId>(r));
     }
     referee_.conclude(maps, result_);
@@ -213,6 +240,8 @@ class Mission {
   Referee referee_;
   link::Radio radio_;
   link::Ether ether_;
+  std::vector<std::unique_ptr<LocalizedBody>> localized_;  // of every robot, or none
+  std::vector<ErrorSums> errors_;                          // of the same robots
   std::vector<std::unique_ptr<Explorer>> robots_;
   MissionResult result_;
   std::vector<char> close_;  // n x n: closer than kClose in the last step

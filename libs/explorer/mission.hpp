@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "explorer/explorer.hpp"
+#include "explorer/localized_body.hpp"
 #include "link/ether.hpp"
 #include "link/radio.hpp"
 #include "sim/simulator.hpp"
@@ -31,6 +32,9 @@ struct MissionSettings {
   ExplorerSettings explorer;
   sim::SimOptions sim;
   MapperFactory make_mapper;      ///< for sim.lidar, not used otherwise
+  Localization localization = Localization::kPerfect;  ///< otherwise sim.lidar must be set
+  OdometryNoise odometry;
+  TrackingFactory make_tracking;  ///< for Localization::kSlam, not used otherwise
   double until = 1.0;             ///< stop when this fraction of the reachable area has been seen; 1: go on to the end
   double max_time_s = 0.0;        ///< 0: ten times what one slow robot would need to drive over everything
   std::vector<Fault> faults;      ///< time ascending
@@ -41,6 +45,11 @@ struct MissionSettings {
 enum class MissionStatus { kExplored, kUnreachableLeft, kTimeout, kFailed, kInterrupted };
 std::string to_string(MissionStatus status);
 
+/// How far a robot was from where it believed itself to be.
+struct LocalizationError {
+  double rmse_m = 0.0, max_m = 0.0, last_m = 0.0;
+};
+
 struct MissionRobot {
   RobotSpec spec;
   std::vector<TimedPose> trajectory;
@@ -48,6 +57,7 @@ struct MissionRobot {
   Grid<std::uint8_t> seen;
   double first_seen_m2 = 0.0;
   double path_m = 0.0;
+  std::optional<LocalizationError> localization;  ///< absent: it knew
 };
 
 struct TimelinePoint {

@@ -1,6 +1,7 @@
 #include "explorer/scan_mapper.hpp"
 
 #include "slam_glue/grid_mapper.hpp"
+#include "slam_glue/pose_tracker.hpp"
 
 namespace outrider::explorer {
 namespace {
@@ -23,6 +24,11 @@ std::unique_ptr<ScanMapper> make_scan_mapper(const GridGeometry& geometry, const
   slam_glue::MapperOptions options;
   options.max_range_m = spec.range;
   return std::make_unique<GridScanMapper>(geometry, options);
+}
+
+PoseTracking make_pose_tracking(const RobotSpec& spec) {
+  const auto tracker = std::make_shared<slam_glue::PoseTracker>(spec.start, spec.range);
+  return [tracker](const LaserScan& scan, const Pose2& T_odom_robot) { return tracker->add(scan, T_odom_robot); };
 }
 
 }  // namespace outrider::explorer

@@ -34,6 +34,9 @@ class Module : public MapsModule {
                                                          const RobotSpec& spec) const override {
     return explorer::make_scan_mapper(geometry, spec);
   }
+  explorer::PoseTracking make_pose_tracking(const RobotSpec& spec) const override {
+    return explorer::make_pose_tracking(spec);
+  }
   std::vector<Work> speed_works() const override { return app::speed_works(); }
 };
 
