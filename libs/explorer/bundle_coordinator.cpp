@@ -120,7 +120,8 @@ class BundleCoordinator : public Coordinator {
  public:
   BundleCoordinator(bool negotiate, const CoordinatorSettings& settings)
       : negotiate_(negotiate), grain_{.spacing = settings.cluster_spacing, .most = kMostTasks, .gains = false},
-        rounds_(make_auction_coordinator(grain_, [this](const auction::BidTable& table, const auction::Clear&) { return bundles(table); })) {}
+        rounds_(make_auction_coordinator([grain = grain_](const Situation&) { return grain; },
+                                         [this](const auction::BidTable& table, const auction::Clear&) { return bundles(table); })) {}
 
   Decision decide(const Situation& s) override {
     situation_ = &s;
@@ -227,7 +228,9 @@ class BundleCoordinator : public Coordinator {
 
 std::unique_ptr<Coordinator> make_bundle_coordinator(std::string_view name, const CoordinatorSettings& settings) {
   if (name == "continuous")
-    return make_auction_coordinator({.spacing = settings.cluster_spacing, .most = 256, .gains = false},
+    return make_auction_coordinator([spacing = settings.cluster_spacing](const Situation&) {
+                                      return TaskGrain{.spacing = spacing, .most = 256, .gains = false};
+                                    },
                                     [](const auction::BidTable& table, const auction::Clear&) { return continuous_awards(table); });
   return std::make_unique<BundleCoordinator>(name == "dssa", settings);
 }
