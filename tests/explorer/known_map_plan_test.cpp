@@ -26,7 +26,7 @@ TEST(KnownMapPlan, SearchImprovesOnItsBeginningAndStaysAboveTheBound) {
   for (int y = 0; y < 30; ++y) map[Cell{25, y}] = CellState::kOccupied;
   const std::vector<RobotSpec> team{robot_at(map, {5, 5}, 2.0, 4.0), robot_at(map, {7, 5}, 1.0, 3.0)};
   const auto time = [&](int evaluations) {
-    return plan_with_known_map(map, team, {.evaluations = evaluations}).time_s;
+    return plan_with_known_map(map, team, {.evaluations = evaluations}).time_s.value();
   };
   const double begun = time(0), searched = time(4000);
   EXPECT_LT(searched, begun);
