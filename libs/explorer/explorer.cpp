@@ -120,7 +120,8 @@ void Explorer::hear(const link::Delivery& delivery, double now_s) {
     auto mate = std::lower_bound(team_.begin(), team_.end(), status->robot,
                                  [](const Teammate& t, RobotId robot) { return t.robot < robot; });
     if (mate == team_.end() || mate->robot != status->robot) mate = team_.insert(mate, Teammate{status->robot, {}, 0.0});
-    *mate = Teammate{status->robot, *status, now_s};
+    mate->status = *status;  // in place: its way keeps its memory
+    mate->heard_s = now_s;
   } else if (is_auction_traffic(message)) {
     inbox_.push_back(delivery);
   }
@@ -183,9 +184,14 @@ void Explorer::end_task(const char* how, double now_s) {
 }
 
 void Explorer::run_coordinator(double now_s) {
-  heard_.clear();
-  for (const Teammate& mate : team_)
-    if (now_s <= mate.heard_s + settings_.silent_after) heard_.push_back(mate);
+  std::size_t heard = 0;  // copied over last time's, whose memory is used again
+  for (const Teammate& mate : team_) {
+    if (now_s > mate.heard_s + settings_.silent_after) continue;
+    if (heard < heard_.size()) heard_[heard] = mate;
+    else heard_.push_back(mate);
+    ++heard;
+  }
+  heard_.resize(heard);
   if (now_s > period_begin_s_ && (!inbox_.empty() || !task_)) {  // an auction period ends: eq. 6 to 9
     rate_.add(new_area_, now_s - period_begin_s_);
     new_area_ = 0.0;

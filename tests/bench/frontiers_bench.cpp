@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "decision/frontier_map.hpp"
 #include "decision/frontiers.hpp"
 #include "maps.hpp"
 
@@ -29,6 +30,23 @@ void Frontiers_Extract(benchmark::State& state) {
   const auto& found = extractor.extract(map);
   state.counters["cells"] = static_cast<double>(found.cells.size());
   state.counters["clusters"] = static_cast<double>(found.clusters.size());
+}
+
+/// What a decision costs when 100 cells of a row have just become known, and then unknown again: beside Extract.
+void Frontiers_Incremental(benchmark::State& state) {
+  OccupancyGrid map = explored_office(state);
+  std::vector<std::uint32_t> all(map.size()), changed;
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  decision::FrontierMap frontiers(map.geometry());
+  frontiers.update(map, all);
+  const auto begin = static_cast<std::uint32_t>(map.geometry().index({map.width() / 2, map.height() / 2}));
+  for (std::uint32_t i = begin; i < begin + 100; ++i) changed.push_back(i);
+  std::vector<CellState> known;
+  for (const std::uint32_t i : changed) known.push_back(map[i]);
+  for (auto _ : state) {
+    for (const std::uint32_t i : changed) map[i] = map[i] == CellState::kUnknown ? known[i - begin] : CellState::kUnknown;
+    benchmark::DoNotOptimize(frontiers.update(map, changed).data());
+  }
 }
 
 void Frontiers_FloorOnePass(benchmark::State& state) {
@@ -91,6 +109,7 @@ BENCHMARK(Frontiers_Extract)
     ->Args({1000, 1})
     ->Args({4000, 1})
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(Frontiers_Incremental)->Args({1000, 0})->Args({4000, 0})->Unit(benchmark::kMicrosecond);
 BENCHMARK(Frontiers_OpenCv)->Args({1000, 0})->Args({4000, 0})->Args({1000, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(Frontiers_PlainSearch)->Args({1000, 0})->Args({1000, 1})->Unit(benchmark::kMillisecond);
 
