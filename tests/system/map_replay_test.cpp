@@ -29,6 +29,14 @@ TEST_F(MapAndReplay, ConversionsKeepEveryCell) {
   }
 }
 
+TEST_F(MapAndReplay, AFullDiskLeavesNoHalfAMap) {
+  for (const char* out : {"m.yaml", "m.gridmap", "m.bt"}) {
+    const Outcome outcome = run({"map", "office1", out}, {.most_bytes_a_file = 200});
+    EXPECT_NE(outcome.code, 0) << out;
+    EXPECT_TRUE(tree(dir).empty()) << tree(dir).begin()->first;
+  }
+}
+
 TEST_F(MapAndReplay, AConvertedWorldIsExploredAsTheWorldItself) {
   spill(dir / "team.yaml", "robots:\n  - {name: a, start: [0.875, 7.375, 0]}\n");
   EXPECT_EQ(run({"map", "office1", "copy.yaml"}).code, 0);

@@ -38,10 +38,20 @@ void convert(const OccupancyGrid& map, const std::filesystem::path& out, bool fo
   if (const auto folder = out.parent_path(); !folder.empty() && !std::filesystem::is_directory(folder))
     throw InputError(fmt::format("{}: no such folder; expected an existing one for OUT", folder.string()));
   const std::string name = out.filename().string();
-  if (name.ends_with(".yaml") || name.ends_with(".yml")) slam_glue::save_ros_map(map, out);
-  else if (name.ends_with(".gridmap") || name.ends_with(".gridmap.gz")) slam_glue::save_gridmap(map, out);
-  else if (name.ends_with(".bt")) slam_glue::save_octomap(map, out, 0.0);
-  else throw InputError(fmt::format("{}: unknown map format; expected .yaml, .gridmap, .gridmap.gz or .bt", name));
+  const bool ros = name.ends_with(".yaml") || name.ends_with(".yml");
+  const bool gridmap = name.ends_with(".gridmap") || name.ends_with(".gridmap.gz");
+  if (!ros && !gridmap && !name.ends_with(".bt"))
+    throw InputError(fmt::format("{}: unknown map format; expected .yaml, .gridmap, .gridmap.gz or .bt", name));
+  try {
+    if (ros) slam_glue::save_ros_map(map, out);
+    else if (gridmap) slam_glue::save_gridmap(map, out);
+    else slam_glue::save_octomap(map, out, 0.0);
+  } catch (...) {  // a full disk: nothing half-written stays
+    std::error_code ignored;
+    std::filesystem::remove(out, ignored);
+    if (ros) std::filesystem::remove(std::filesystem::path(out).replace_extension(".pgm"), ignored);
+    throw;
+  }
 }
 
 void run(const Options& o, Context& ctx) {
