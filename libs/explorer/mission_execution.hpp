@@ -60,7 +60,7 @@ struct ExecutionResult {
 };
 
 /// Runs the mission on the true map `truth`. `going(now_s)` false: stop. Deterministic. Throws InputError for impossible
-/// starts and for maps with deviations of their own robots.
+/// starts and for robots with maps of their own.
 ExecutionResult execute(const OccupancyGrid& truth, const decision::TopoMission& mission, const ExecutionSettings& settings,
                         const std::function<bool(double now_s)>& going = {});
 
