@@ -9,6 +9,7 @@
 #include "bench_lozenguez.hpp"
 #include "explorer/allocation_run.hpp"
 #include "explorer/mission_draw.hpp"
+#include "report/mission_page.hpp"
 
 namespace outrider::app {
 namespace {
@@ -143,6 +144,25 @@ std::vector<report::Table> tables(const report::BenchResult& result) {
   return all;
 }
 
+/// Fig. 9: mean gain of D-SSA by the number of goals.
+std::string figures(const report::BenchResult& result) {
+  std::string html;
+  for (const auto& c : result.design.cases)
+    for (const char* metric : {"duration_gain", "movement_gain"}) {
+      std::vector<std::pair<double, double>> means;
+      for (int goals = 1; goals <= kMostGoals; ++goals) {
+        double sum = 0.0;
+        int n = 0;
+        for (const auto& row : result.rows)
+          if (row.case_name == c.name && row.algorithm == "dssa" && row.extra["goals"].get<int>() == goals)
+            sum += 100.0 * row.metric(metric).value_or(0.0), ++n;
+        if (n > 0) means.emplace_back(goals, sum / n);
+      }
+      html += fmt::format("<h3>{}: {} of dssa</h3>\n{}", c.name, metric, report::curve_svg(means, "goals", "mean gain [%]"));
+    }
+  return html;
+}
+
 Experiment experiment_of(const Options& o, const BenchArguments& arguments) {
   auto ground = std::make_shared<Ground>(Ground{o, lozenguez_map("urban", kLongest), lozenguez_map("labyrinth", kLongest), variants()});
   Experiment e;
@@ -179,7 +199,7 @@ BuildExperiment declare(CLI::App& verb) {
 }  // namespace
 
 BenchInfo bench_lozenguez_gain() {
-  return {"lozenguez2015-gain", "Lozenguez et al. 2015, Fig. 9, 10: punctual against continuous coordination", declare, tables, nullptr};
+  return {"lozenguez2015-gain", "Lozenguez et al. 2015, Fig. 9, 10: punctual against continuous coordination", declare, tables, figures};
 }
 
 }  // namespace outrider::app
