@@ -295,8 +295,14 @@ class Cleaner {
     std::vector<SkeletonNode> nodes;
     std::vector<SkeletonEdge> edges;
     std::vector<int> number(s_.nodes.size(), -1);
+    // A single room is a place without ways: its middle stays.
+    const bool room = std::none_of(alive_.begin(), alive_.end(), [](char alive) { return alive != 0; });
+    const auto middle = std::max_element(s_.nodes.begin(), s_.nodes.end(), [](const auto& a, const auto& b) {
+      return a.clearance < b.clearance;
+    });
     for (std::size_t n = 0; n < s_.nodes.size(); ++n) {
-      if (s_.nodes[n].edges.empty() && s_.nodes.size() > 1) continue;
+      const bool stays = room ? static_cast<std::ptrdiff_t>(n) == middle - s_.nodes.begin() : !s_.nodes[n].edges.empty();
+      if (!stays) continue;
       number[n] = static_cast<int>(nodes.size());
       nodes.push_back(s_.nodes[n]);
     }
