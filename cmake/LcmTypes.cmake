@@ -20,6 +20,11 @@ add_library(outrider_lcm_types INTERFACE)
 add_dependencies(outrider_lcm_types outrider_lcm_gen)
 target_include_directories(outrider_lcm_types SYSTEM INTERFACE "${lcm_dir}" "${LCM_INCLUDE_DIR}")
 
+# LCM 1.3.1 decodes doubles through pointers to integers: whoever includes a generated header is named here.
+foreach(user codec introduction lcm_body wire wire_bundles)
+  set_source_files_properties("${PROJECT_SOURCE_DIR}/libs/link/${user}.cpp" PROPERTIES COMPILE_OPTIONS -fno-strict-aliasing)
+endforeach()
+
 find_path(SODIUM_INCLUDE_DIR sodium.h REQUIRED)
 find_library(SODIUM_LIBRARY sodium REQUIRED)
 add_library(outrider_sodium INTERFACE)

@@ -16,8 +16,7 @@ namespace outrider::link {
 namespace {
 
 constexpr std::uint32_t kMostBeams = 8192;
-constexpr double kLookAhead = 0.5;     // [m]
-constexpr double kTurnOnTheSpot = 1.0; // [rad] off the way
+constexpr double kTurnOnTheSpot = 1.0;  // [rad] off the way
 
 std::uint32_t big_endian32(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -71,16 +70,14 @@ std::optional<Pose2> parse_pose(std::span<const std::uint8_t> payload) {
   return good ? std::optional(Pose2{wire.pos[0], wire.pos[1], theta}) : std::nullopt;
 }
 
-Velocity pursue(const Pose2& pose, std::span<const Point> path, double speed, double arrive_m) {
-  if (path.empty() || distance(pose.position(), path.back()) <= arrive_m) return {};
-  const auto away = [&](Point p) { return distance(pose.position(), p); };
-  const auto nearest = std::min_element(path.begin(), path.end(), [&](Point a, Point b) { return away(a) < away(b); });
-  const auto ahead = std::find_if(nearest, path.end(), [&](Point p) { return away(p) >= kLookAhead; });
-  const Point aim = ahead == path.end() ? path.back() : *ahead;
+Velocity pursue(const Pose2& pose, std::vector<Point>& path, double speed, double arrive_m) {
+  const auto ahead = std::find_if(path.begin(), path.end(), [&](Point p) { return distance(pose.position(), p) > arrive_m; });
+  path.erase(path.begin(), ahead);
+  if (path.empty()) return {};
+  const Point aim = path.front();
   const double off = std::remainder(std::atan2(aim.y - pose.y, aim.x - pose.x) - pose.theta, 2.0 * kPi);
   if (std::abs(off) > kTurnOnTheSpot) return {0.0, std::copysign(1.0, off)};
-  const double reach = std::max(distance(pose.position(), aim), arrive_m);
-  return {speed, 2.0 * speed * std::sin(off) / reach};  // the arc through the aim
+  return {speed, 2.0 * speed * std::sin(off) / distance(pose.position(), aim)};  // the arc through the aim
 }
 
 LcmBody::LcmBody(const MulticastUrl& url, LcmBodySettings settings) : settings_(std::move(settings)), socket_(open_or_throw(url)) {
@@ -97,9 +94,8 @@ const Sensing& LcmBody::sense() {
   delivered_.scans.clear();
   std::swap(delivered_.scans, gathering_.scans);
   delivered_.pose = gathering_.pose;
-  while (path_.size() > 1 && distance(delivered_.pose.position(), path_.front()) <= settings_.arrive_m) path_.erase(path_.begin());
-  delivered_.arrived = path_.empty() || distance(delivered_.pose.position(), path_.back()) <= settings_.arrive_m;
   const Velocity v = pursue(delivered_.pose, path_, settings_.speed, settings_.arrive_m);
+  delivered_.arrived = path_.empty();
   outrider_wire::velocity_command_t wire{};
   wire.utime = wall_clock_us();
   wire.linear = v.linear;

@@ -26,12 +26,12 @@ struct LcmBodySettings {
 std::optional<LaserScan> parse_planar_lidar(std::span<const std::uint8_t> payload, double range_max);
 std::optional<Pose2> parse_pose(std::span<const std::uint8_t> payload);
 
-/// Turn rate and speed that pursue a point half a metre ahead on the path. {0, 0} at its end.
+/// Speed and turn rate that pursue the first point of a path; points that have been reached are dropped. {0, 0} at the end.
 struct Velocity {
   double linear = 0.0;   ///< [m/s]
   double angular = 0.0;  ///< [rad/s]
 };
-Velocity pursue(const Pose2& pose, std::span<const Point> path, double speed, double arrive_m);
+Velocity pursue(const Pose2& pose, std::vector<Point>& path, double speed, double arrive_m);
 
 /// Driver messages are believed: keep them on a network of their own (ttl=0). The path is published anew whenever it
 /// changes, the velocity at every sense(). Not thread-safe.

@@ -76,7 +76,8 @@ TEST(LcmBody, APoseOfBotCoreIsUnderstood) {
 }
 
 TEST(LcmBody, PursuitEndsAtTheEndOfThePath) {
-  const std::vector<Point> path{{1.0, 0.0}, {2.0, 0.0}, {2.0, 1.5}};
+  std::vector<Point> path{{1.0, 0.0}, {2.0, 0.0}, {2.0, 1.5}};
+  const Point end = path.back();
   Pose2 pose{0.0, 0.3, 2.0};
   for (int k = 0; k < 1000; ++k) {
     const Velocity v = pursue(pose, path, 0.5, 0.15);
@@ -84,9 +85,9 @@ TEST(LcmBody, PursuitEndsAtTheEndOfThePath) {
     pose.x += 0.05 * v.linear * std::cos(pose.theta);
     pose.y += 0.05 * v.linear * std::sin(pose.theta);
   }
-  EXPECT_LE(distance(pose.position(), path.back()), 0.15);
-  EXPECT_EQ(pursue(pose, path, 0.5, 0.15).linear, 0.0);
-  EXPECT_EQ(pursue(pose, {}, 0.5, 0.15).angular, 0.0);
+  EXPECT_LE(distance(pose.position(), end), 0.15);
+  EXPECT_TRUE(path.empty());
+  EXPECT_EQ(pursue(pose, path, 0.5, 0.15).angular, 0.0);
 }
 
 }  // namespace
