@@ -18,6 +18,8 @@ namespace {
 constexpr double kDt = 0.1;
 const GridGeometry kFloor{1.0, {0.0, 0.0}, 40, 40};
 
+TaskGrain every_task(const Situation&) { return {}; }
+
 struct Air {
   double loss = 0.0, repeat = 0.0, most_delay_s = 0.0;
   std::function<bool(RobotId, RobotId)> cut = [](RobotId, RobotId) { return false; };
@@ -35,7 +37,7 @@ class Bidders {
       b.spec.speed = 1.0 + 0.5 * static_cast<double>(random_() % 4);
       b.spec.range = 3.0 + static_cast<double>(random_() % 5);
       b.at = {uniform() * 39.0, uniform() * 39.0};
-      b.coordinator = make_auction_coordinator({}, [](const auction::BidTable& table, const auction::Clear& clear) {
+      b.coordinator = make_auction_coordinator(every_task, [](const auction::BidTable& table, const auction::Clear& clear) {
         return auction::sequential_auction(table, auction::bid_ea, {}, clear);
       });
       robots_.push_back(std::move(b));
@@ -299,7 +301,7 @@ TEST(LossyAuction, ARobotThatStartsAgainWithoutMemoryIsObeyedAgain) {
   Bidders team(3, 20, 5, true);
   team.run(10.0, {});
   auto& reborn = team.robots_[0];
-  reborn.coordinator = make_auction_coordinator({}, [](const auction::BidTable& table, const auction::Clear& clear) {
+  reborn.coordinator = make_auction_coordinator(every_task, [](const auction::BidTable& table, const auction::Clear& clear) {
     return auction::sequential_auction(table, auction::bid_ea, {}, clear);
   });
   reborn.task.reset();
