@@ -125,7 +125,9 @@ TEST(SessionMerge, HalvesOfARealRunAndOtherBuildings) {
   // Where the second half starts, by the undivided run.
   const TimedPose& start = two.logs[1].trajectory.front();
   for (const TimedPose& p : one.logs[0].trajectory)
-    if (p.t == start.t) EXPECT_LT(distance(p.pose.position(), start.pose.position()), 0.5);
+    if (p.t == start.t) {
+      EXPECT_LT(distance(p.pose.position(), start.pose.position()), 0.5);
+    }
 }
 
 }  // namespace
