@@ -127,6 +127,14 @@ TEST_F(BadInput, NamesAndFlagsSuggestTheNearest) {
   expect_refused({}, {"--help"}, false);
 }
 
+TEST_F(BadInput, StartsOfSeveralLogs) {
+  expect_refused({"replay", "x.log", "y.log"}, {"2 logs", "--start", "--unknown-starts"});
+  expect_refused({"replay", "x.log", "y.log", "--start", "0,0,0"}, {"2 logs", "--unknown-starts"});
+  expect_refused({"replay", "x.log", "--start", "1,2"}, {"--start", "\"x,y,theta\"", "'1,2'"});
+  expect_refused({"replay", "x.log", "--start", "1,2,nan"}, {"--start", "'1,2,nan'"});
+  expect_refused({"replay", "x.log", "--start", "0,0,0", "--start", "1,0,0"}, {"--start", "1 log"});
+}
+
 TEST_F(BadInput, FaultsAndComms) {
   for (const char* spec :
        {"kill", "kill:", "kill:robot1", "kill:robot1@", "kill:robot1@-1", "kill:robot1@nan", "kill:robot1@3:4",

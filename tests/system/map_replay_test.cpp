@@ -67,6 +67,28 @@ TEST_F(MapAndReplay, RawlogBecomesAMap) {
   EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
+TEST_F(MapAndReplay, ALogLiesOnItselfAndItsMapIsItsOwnTruth) {
+  const fs::path log = packaged_rawlog();
+  if (!fs::exists(log)) GTEST_SKIP() << log << " is not installed (package mrpt-apps)";
+  const Outcome alone = run({"replay", log.string(), "--resolution", "0.2", "--out", "one"});
+  EXPECT_EQ(alone.code, 0) << alone.err;
+  const Outcome outcome = run({"replay", log.string(), log.string(), "--unknown-starts", "--resolution", "0.2",
+                               "--true-map", "one/map.yaml", "--json", "--out", "two"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json document = Json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(document.is_object()) << outcome.out.substr(0, 200);
+  const Json& result = document["result"];
+  ASSERT_EQ(result["merge"].size(), 1U);
+  EXPECT_TRUE(result["merge"][0]["accepted"].get<bool>()) << result["merge"][0];
+  for (const Json& value : result["merge"][0]["transform"]) EXPECT_NEAR(value.get<double>(), 0.0, 0.1);
+  EXPECT_GT(result["overlap"]["fraction"].get<double>(), 0.9);
+  EXPECT_GT(result["map_quality"]["within_tolerance"]["precision"].get<double>(), 0.9);
+  EXPECT_GT(result["self_consistency"]["end_points_agree"].get<double>(), 0.9);
+  for (const char* name : {"map.yaml", "map.bt", "robots/robot1/map.yaml", "robots/robot2/map.yaml",
+                           "trajectories/robot2.tum", "report.html"})
+    EXPECT_FALSE(slurp(dir / "two" / name).empty()) << name;
+}
+
 TEST_F(MapAndReplay, ReportComparesRuns) {
   for (const char* name : {"ia", "ta"})
     EXPECT_EQ(run({"explore", "office1", "--until", "0.3", "--coordinator", name, "--out", name}).code, 0);
