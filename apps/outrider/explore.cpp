@@ -18,6 +18,7 @@
 #include "report/run_folder.hpp"
 #include "specs.hpp"
 #include "team_file.hpp"
+#include "true_map.hpp"
 #include "world/error.hpp"
 #include "world_source.hpp"
 
@@ -165,6 +166,7 @@ report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& wor
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   Json times = timing(wall.count(), result);
   report::RunRecord record = mission_record(std::move(result), settings, world.map);
+  if (settings.localization != explorer::Localization::kPerfect) set_truth(world.map, record);
   record.version = OUTRIDER_VERSION;
   record.seed = seed;
   record.world = world_json(world);

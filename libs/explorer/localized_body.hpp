@@ -55,7 +55,6 @@ class LocalizedBody final : public Body {
   std::mt19937_64 random_;
   std::normal_distribution<double> unit_;
   Pose2 T_true_, T_odom_, T_believed_;  ///< of the robot, at the last scan
-  bool first_ = true;
   std::vector<Point> way_;  ///< still to drive, in the believed frame
   Sensing sensing_;
 };

@@ -175,7 +175,7 @@ class GraphLocalizer : public Localizer {
   void finish() override { slam_.finish(); }
   std::vector<Pose2> poses() const override { return slam_.poses(); }
   std::size_t keyframes() override { return slam_.graph().size(); }
-  std::optional<SessionGraph> take_graph() override { return SessionGraph{slam_.graph(), slam_.closures()}; }
+  std::optional<SessionGraph> take_graph() override { return slam_.take(); }
 
  private:
   GraphSlam slam_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slam_glue/correlative.hpp"
+#include "slam_glue/joint_graph.hpp"
 #include "slam_glue/keyframe_graph.hpp"
 #include "slam_glue/loop_closing.hpp"
 #include "slam_glue/point_matcher.hpp"
@@ -49,6 +50,11 @@ class GraphSlam {
   /// Pose of every scan.
   std::vector<Pose2> poses() const;
   const KeyframeGraph& graph() const { return graph_; }
+  /// Hands over what was built; nothing else may be asked afterwards.
+  SessionGraph take() {
+    auto found = closures();
+    return {std::move(graph_), std::move(found)};
+  }
   std::vector<LoopClosure> closures() const { return closer_.closures(graph_); }
 
  private:

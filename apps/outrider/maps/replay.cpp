@@ -16,6 +16,7 @@
 #include "report/metrics.hpp"
 #include "report/run_folder.hpp"
 #include "slam_glue/map_files.hpp"
+#include "true_map.hpp"
 #include "verbs.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"

@@ -29,12 +29,8 @@ report::Json replay_result(const slam_glue::TeamSlamResult& slam, const std::str
 std::string evaluate_trajectories(const ReplayOptions& options, const slam_glue::TeamSlamResult& slam,
                                   report::Json& result);
 
-/// Lays the map onto the true one.
-void set_truth(OccupancyGrid truth, report::RunRecord& record);
-
-/// How the logs came together, and how good the map is, in lines to read.
+/// How the logs came together, in lines to read.
 std::string merge_lines(const report::Json& result);
-std::string quality_lines(const report::Json& result);
 
 /// robot1, robot2, ...
 std::string robot_name(std::size_t log);

@@ -7,7 +7,6 @@
 
 #include "replay.hpp"
 #include "slam_glue/evaluation.hpp"
-#include "slam_glue/map_alignment.hpp"
 
 namespace outrider::app {
 namespace {
@@ -191,15 +190,6 @@ std::string evaluate_trajectories(const ReplayOptions& o, const TeamSlamResult& 
   return text;
 }
 
-void set_truth(OccupancyGrid truth, report::RunRecord& record) {
-  if (const auto alignment = slam_glue::align_map(record.map, truth)) {
-    record.T_truth_map = alignment->T_truth_map;
-    record.alignment = {{"transform", pose_json(alignment->T_truth_map)}, {"score", alignment->score},
-                        {"rival_score", alignment->rival}, {"moved", alignment->found}};
-  }
-  record.truth = std::move(truth);
-}
-
 std::string merge_lines(const Json& result) {
   if (!result.contains("merge")) return "";
   std::string text;
@@ -215,25 +205,6 @@ std::string merge_lines(const Json& result) {
                 : fmt::format("{} is not merged: {}\n", m["robot"].get<std::string>(), why);
   }
   return text;
-}
-
-std::string quality_lines(const Json& result) {
-  if (!result.contains("map_quality")) return "";
-  const Json& q = result["map_quality"];
-  const Json& near = q["within_tolerance"];
-  std::string text;
-  if (q.contains("alignment")) {
-    const Json& T = q["alignment"]["transform"];
-    text = fmt::format("Map laid onto the true one at x {:.2f} m, y {:.2f} m, {:.1f} deg: fit {:.2f}, next best {:.2f}\n",
-                       T[0].get<double>(), T[1].get<double>(), T[2].get<double>() * 180.0 / kPi,
-                       q["alignment"]["score"].get<double>(), q["alignment"]["rival_score"].get<double>());
-  }
-  return text + fmt::format("Map quality: IoU {:.3f} of walls, {:.3f} of free space; accuracy {:.3f}; within {:.2f} m: "
-                            "precision {:.3f}, recall {:.3f}; walls {:.3f} m off in the mean; {:.1f} % complete\n",
-                            q["iou_occupied"].get<double>(), q["iou_free"].get<double>(), q["accuracy"].get<double>(),
-                            near["tolerance_m"].get<double>(), near["precision"].get<double>(),
-                            near["recall"].get<double>(), q["wall_to_truth_m"]["mean"].get<double>(),
-                            100.0 * q["completeness"].get<double>());
 }
 
 }  // namespace outrider::app
