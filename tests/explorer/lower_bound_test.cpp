@@ -83,8 +83,11 @@ TEST(LowerBound, NoRunBeatsIt) {
         settings.make_mapper = make_scan_mapper;
         settings.record_events = false;
         const MissionResult result = run_mission(map, team, settings);
-        for (const auto& [fraction, time] : result.time_to)
-          if (time) EXPECT_GE(*time, lower_bound_s(map, team, fraction, lidar)) << fraction;
+        for (const auto& [fraction, time] : result.time_to) {
+          if (time) {
+            EXPECT_GE(*time, lower_bound_s(map, team, fraction, lidar)) << fraction;
+          }
+        }
       }
   }
 }

@@ -37,7 +37,9 @@ TEST_F(ReferenceBench, ExploreBenchFinishesBesideItsReferences) {
     if (row["algorithm"] == "nearest") {
       EXPECT_TRUE(row["steps"].is_number()) << row.dump();
       EXPECT_LE(row["steps"], row["clock"]);
-      if (!row["ratio_bound"].is_null()) EXPECT_GE(row["ratio_bound"], 1.0);
+      if (!row["ratio_bound"].is_null()) {
+        EXPECT_GE(row["ratio_bound"], 1.0);
+      }
     } else if (row["case"] == "hall-single" && row["algorithm"] == "reference-potential") {
       EXPECT_TRUE(row["steps"].is_null());
     }
@@ -63,7 +65,9 @@ TEST_F(ReferenceBench, TheOracleIsBetweenTheBoundAndTheCoordinators) {
   ASSERT_TRUE(document.is_object());
   for (const Json& row : document["rows"]) {
     ASSERT_TRUE(row["time_s"].is_number()) << row.dump();
-    if (!row["ratio_bound"].is_null()) EXPECT_GE(row["ratio_bound"], 1.0) << row.dump();
+    if (!row["ratio_bound"].is_null()) {
+      EXPECT_GE(row["ratio_bound"], 1.0) << row.dump();
+    }
   }
 }
 
