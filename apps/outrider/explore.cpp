@@ -166,7 +166,7 @@ report::RunRecord run_exploration(const ExploreOptions& o, const sim::World& wor
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   Json times = timing(wall.count(), result);
   report::RunRecord record = mission_record(std::move(result), settings, world.map);
-  if (settings.localization != explorer::Localization::kPerfect) set_truth(world.map, record);
+  if (settings.localization != explorer::Localization::kPerfect) maps_module().set_truth(world.map, record);
   record.version = OUTRIDER_VERSION;
   record.seed = seed;
   record.world = world_json(world);

@@ -35,6 +35,8 @@ class MapsModule {
                                         const slam_glue::MapLoadOptions& options) const = 0;
   /// Writes map.yaml, map.pgm, map.gridmap, robots/NAME/map.*, and map.bt if asked, into a run folder.
   virtual void write_maps(const report::RunRecord& record, const std::filesystem::path& folder, bool octomap) const = 0;
+  /// See true_map.hpp.
+  virtual void set_truth(OccupancyGrid truth, report::RunRecord& record) const = 0;
   /// See explorer::make_scan_mapper.
   virtual std::unique_ptr<explorer::ScanMapper> make_scan_mapper(const GridGeometry& geometry,
                                                                  const RobotSpec& spec) const = 0;

@@ -7,7 +7,7 @@
 
 namespace outrider::app {
 
-/// Lays the map onto the true one, for runs whose map has a frame of its own.
+/// Lays the map onto the true one, for runs whose map has a frame of its own. Lives in the maps module.
 void set_truth(OccupancyGrid truth, report::RunRecord& record);
 
 /// How good the map is, in lines to read; "" when no truth is known.

@@ -7,6 +7,7 @@
 #include "explorer/bundle_coordinator.hpp"
 #include "explorer/coordinator.hpp"
 #include "explorer/dvf_coordinator.hpp"
+#include "explorer/scout_coordinator.hpp"
 #include "world/error.hpp"
 #include "world/nearest_name.hpp"
 #include "world/ray.hpp"
@@ -122,6 +123,10 @@ std::unique_ptr<Coordinator> make_hungarian(std::string_view, const CoordinatorS
   });
 }
 
+std::unique_ptr<Coordinator> make_scout(std::string_view, const CoordinatorSettings&) {
+  return make_scout_coordinator();
+}
+
 struct Row {
   CoordinatorInfo info;
   Make make;
@@ -144,6 +149,7 @@ const std::vector<Row>& table() {
       {{"continuous", "free robots bid for one frontier cluster each, the busy keep theirs (Lozenguez 2015, Algorithm 1)"}, make_bundle_coordinator},
       {{"ssa", "bundles of frontier clusters by sequential simultaneous auctions (Lozenguez 2015, section 5)"}, make_bundle_coordinator},
       {{"dssa", "the same, negotiated robot by robot with messages (Lozenguez 2015, section 5.3)"}, make_bundle_coordinator},
+      {{"scout", "tours for the whole team through the world as it is hoped to be (Outrider's own)"}, make_scout},
   };
   return rows;
 }

@@ -3,6 +3,7 @@
 #include "maps_module.hpp"
 
 #include "explorer/scan_mapper.hpp"
+#include "true_map.hpp"
 #include "verbs.hpp"
 
 namespace outrider::app {
@@ -29,6 +30,9 @@ class Module : public MapsModule {
     if (octomap) slam_glue::save_octomap(record.map, folder / "map.bt", 0.0);
     for (const report::RobotRecord& robot : record.robots)
       if (robot.map) write_map(*robot.map, folder / "robots" / robot.spec.name);
+  }
+  void set_truth(OccupancyGrid truth, report::RunRecord& record) const override {
+    app::set_truth(std::move(truth), record);
   }
   std::unique_ptr<explorer::ScanMapper> make_scan_mapper(const GridGeometry& geometry,
                                                          const RobotSpec& spec) const override {
