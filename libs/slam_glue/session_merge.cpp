@@ -82,7 +82,7 @@ class Merger {
  private:
   std::vector<LoopClosure> closer_look(const Placement& placement);
   void connect(std::size_t s, const std::vector<LoopClosure>& closures);
-  void verify(std::size_t s, MergeRecord& record) const;
+  std::size_t verify(std::size_t s, MergeRecord& record) const;  // points that were judged
   void optimise();
   bool place_by_start(std::size_t s, MergeRecord& record);
 
@@ -136,7 +136,7 @@ void Merger::connect(std::size_t s, const std::vector<LoopClosure>& closures) {
   if (news) optimise();
 }
 
-void Merger::verify(std::size_t s, MergeRecord& record) const {
+std::size_t Merger::verify(std::size_t s, MergeRecord& record) const {
   std::vector<bool> this_one(joint_.sessions(), false), others = placed_;
   this_one[s] = true;
   others[s] = false;
@@ -152,12 +152,13 @@ void Merger::verify(std::size_t s, MergeRecord& record) const {
     const std::size_t a = joint_.graph.frames[e.from].session, b = joint_.graph.frames[e.to].session;
     record.closures += (a == s && others[b]) || (b == s && others[a]);
   }
+  return there.seen.agree + there.seen.conflict + back.seen.agree + back.seen.conflict;
 }
 
 /// A given start is believed unless the scans contradict it.
 bool Merger::place_by_start(std::size_t s, MergeRecord& record) {
-  verify(s, record);
-  const bool judged = record.overlap_m2 > settings_.least_overlap_m2;
+  constexpr std::size_t kEnough = 200;  // points; fewer say nothing
+  const bool judged = verify(s, record) > kEnough;
   if (judged && record.agreement < settings_.least_agreement) {
     record.why = fmt::format("the scans contradict the given start: {:.0f} % of what both saw agrees",
                              100.0 * record.agreement);
