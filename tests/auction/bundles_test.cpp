@@ -83,9 +83,10 @@ TEST(Ssa, NeverLosesValueAndEndsWhereNoSingleMoveHelps) {
       for (int i = 0; i < robots; ++i)
         run.allocation[static_cast<std::size_t>(i)].for_each([&](int g) {
           for (int j = 0; j < robots; ++j)
-            if (j != i)
+            if (j != i) {
               EXPECT_LE(price(problem, i, run.allocation[static_cast<std::size_t>(i)], g),
                         price(problem, j, run.allocation[static_cast<std::size_t>(j)], g) + problem.epsilon);
+            }
         });
       EXPECT_EQ(ssa(problem, initial).allocation, run.allocation);
     }

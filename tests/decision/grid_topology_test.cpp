@@ -62,8 +62,9 @@ TEST(GridTopology, ACrossingHasFourWaysAndFourDeadEnds) {
   EXPECT_EQ(map.paths.size(), 8U);
   expect_sound(grid, map, 0.2);
   for (const Waypoint& w : map.waypoints)
-    if (w.state == SemanticState::kIntersection)
+    if (w.state == SemanticState::kIntersection) {
       EXPECT_LT(distance(w.pose.position(), grid.geometry().center({44, 28})), 0.3);
+    }
 }
 
 TEST(GridTopology, ADoorBetweenTwoRoomsIsAFunnel) {
@@ -135,9 +136,10 @@ TEST(SweptDisc, EqualsFineSampling) {
         nearest = std::min(nearest, std::hypot(std::max({c.x - p.x, 0.0, p.x - c.x - 1}), std::max({c.y - p.y, 0.0, p.y - c.y - 1})));
       }
     }
-    if (nearest <= 0.0) EXPECT_FALSE(sweep_clear(grid, a, b, 1e-6));
-    if (nearest > 0.03) EXPECT_TRUE(sweep_clear(grid, a, b, nearest - 0.03));  // a step of the samples is 0.02
-    if (nearest > 0.0) EXPECT_FALSE(sweep_clear(grid, a, b, nearest * 1.0001));
+    EXPECT_FALSE(sweep_clear(grid, a, b, nearest > 0.0 ? nearest * 1.0001 : 1e-6));
+    if (nearest > 0.03) {
+      EXPECT_TRUE(sweep_clear(grid, a, b, nearest - 0.03));  // a step of the samples is 0.02
+    }
   }
 }
 
