@@ -66,10 +66,10 @@ std::vector<Variant> variants(const Options& o) {
       rule("ea", "ea", "EA-A, paper-like", o.bids),
       rule("ia", "ia", "IA-A, paper-like", "rho=0.2," + o.bids),
       rule("ta", "ta", "TA-A, paper-like", o.bids),
-      rule("daa-tuned", "daa", "DAA-A, best-tuned", "gamma=3"),
+      rule("daa-tuned", "daa", "DAA-A, best-tuned", "weight=10"),
       rule("ea-tuned", "ea", "EA-A, best-tuned", "weight=10"),
-      rule("ia-tuned", "ia", "IA-A, best-tuned", "rho=3"),
-      rule("ta-tuned", "ta", "TA-A, best-tuned", "ta=unseen,rho=5"),
+      rule("ia-tuned", "ia", "IA-A, best-tuned", "rho=2"),
+      rule("ta-tuned", "ta", "TA-A, best-tuned", "ta=unseen,rho=3"),
   };
   for (const auto& info : explorer::coordinators())
     if (!auction::bid_rule(info.name)) all.push_back({info.name, info.name, info.one_line, {}});
