@@ -17,6 +17,7 @@
 #include "decision/frontiers.hpp"
 #include "decision/passability.hpp"
 #include "explorer/mission.hpp"
+#include "explorer/scan_mapper.hpp"
 #include "team_file.hpp"
 #include "world/ray.hpp"
 #include "world_source.hpp"
@@ -267,6 +268,7 @@ void add_missions(std::vector<Work>& works) {
     explorer::MissionSettings settings;
     settings.coordinator = coordinator;
     settings.sim.lidar = lidar;
+    settings.make_mapper = explorer::make_scan_mapper;
     settings.until = 0.95;
     settings.record_events = false;
     return [world, team, settings] { keep(explorer::run_mission(world->map, team, settings).map.data().data()); };
