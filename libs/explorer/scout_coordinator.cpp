@@ -115,7 +115,6 @@ class ScoutCoordinator : public Coordinator {
   /// The way of the own tour as far as it is known, and the frontier nearest to what comes then.
   std::optional<Task> next_task(const Situation& s, const std::vector<BidEntry>& entries,
                                 const std::vector<Node>& tour) {
-    const auto& g = s.map.geometry();
     const Cell source[] = {s.at};
     field_.compute(s.passable.mask(), source);
     Node at = world_->node_near(s.at, near_cells_);

@@ -102,7 +102,7 @@ TEST_F(Watch, ABrowserSeesFourRobotsMove) {
   client.set_read_timeout(60);
   const Json wanted{{"capabilities", {{"alwaysMatch", {{"goog:chromeOptions", {{"args", {"--headless=new", "--no-sandbox", "--disable-gpu",
       "--disable-dev-shm-usage", "--window-size=1280,1200", "--user-data-dir=" + (dir / "profile").string()}}}}}}}}};
-  httplib::Result created;
+  httplib::Result created(nullptr, httplib::Error::Unknown);
   for (int k = 0; k < 100 && !created; ++k) {
     created = client.Post("/session", wanted.dump(), "application/json");
     if (!created) std::this_thread::sleep_for(std::chrono::milliseconds(100));
