@@ -15,21 +15,30 @@ using namespace dial;
 constexpr std::uint32_t kNever = kFar<std::uint32_t>;
 constexpr std::uint32_t kEdge = edge_of(Steps::kOctile);
 
+/// No path on a map of so many cells is longer.
+std::uint32_t longest(std::size_t cells) { return static_cast<std::uint32_t>(kDiagonal * (cells + 2)); }
+
+/// A search may use so many levels before it has to look after those of the searches before it; few go farther.
+std::uint32_t reserve_for(std::size_t open, const GridGeometry& g) {
+  return std::min(longest(open), longest(2 * static_cast<std::size_t>(g.width + g.height)));
+}
+
 }  // namespace
 
 ReachField::ReachField(const GridGeometry& geometry)
     : geometry_(geometry),
       levels_(static_cast<std::size_t>(geometry.width + 2) * static_cast<std::size_t>(geometry.height + 2), kBlocked),
-      base_(kNever),
+      base_(kNever - longest(geometry.size())),
       borrowed_(0) {}
 
 void ReachField::update(const Grid<std::uint8_t>& mask, std::span<const std::uint32_t> changed) {
   for (const std::uint32_t index : changed) {
     std::uint32_t& level = levels_[padded_index(geometry_.cell_at(index))];
-    const bool was_open = level != kBlocked && padded_index(geometry_.cell_at(index)) != borrowed_;
-    if (padded_index(geometry_.cell_at(index)) == borrowed_) borrowed_ = 0;
+    const bool is_borrowed = padded_index(geometry_.cell_at(index)) == borrowed_;
+    if (level != kBlocked && !is_borrowed) --open_;
+    if (is_borrowed) borrowed_ = 0;
     level = mask[index] != 0 ? kNever : kBlocked;
-    open_ += (mask[index] != 0 ? 1U : 0U) - (was_open ? 1U : 0U);
+    if (level != kBlocked) ++open_;
   }
   settled_ = 0;
   empty_ = kRingSize;
@@ -37,14 +46,13 @@ void ReachField::update(const Grid<std::uint8_t>& mask, std::span<const std::uin
 
 void ReachField::begin(Cell source) {
   if (borrowed_ != 0) levels_[std::exchange(borrowed_, 0)] = kBlocked;
-  // No path is longer than this, so the search stays below the levels of all before it.
-  const std::uint64_t longest = kDiagonal * (std::uint64_t{open_} + 2);
-  if (base_ <= longest + 1) {
+  const std::uint32_t reserve = reserve_for(open_, geometry_);
+  if (base_ <= reserve + 1) {
     for (std::uint32_t& level : levels_)
       if (level != kBlocked) level = kNever;
-    base_ = kNever;
+    base_ = kNever - longest(geometry_.size());
   }
-  base_ -= static_cast<std::uint32_t>(longest);
+  base_ -= reserve;
   const std::size_t at = padded_index(source);
   if (levels_[at] == kBlocked) borrowed_ = at;
   levels_[at] = base_;
@@ -59,7 +67,11 @@ void ReachField::extend(double max_m) {
   const auto limit = static_cast<std::uint32_t>(
       std::min(kLongest, std::floor(max_m / geometry_.resolution * kEdge * (1.0 + 1e-12))));
   const auto stride = static_cast<std::size_t>(geometry_.width) + 2;
+  const std::uint32_t reserve = reserve_for(open_, geometry_);
   for (; empty_ < kRingSize && next_ <= limit; ++next_) {
+    if (next_ + kDiagonal == reserve)  // beyond, levels of searches before this one could be in the way
+      for (std::uint32_t& level : levels_)
+        if (level != kBlocked && level - base_ >= reserve) level = kNever;
     settled_ = next_;
     const std::size_t size = std::exchange(sizes_[next_ % kRingSize], 0);
     empty_ = size == 0 ? empty_ + 1 : 0;

@@ -50,6 +50,30 @@ TEST(ReachField, EqualsTheFullFieldAsFarAsItWentWhateverCameBefore) {
   }
 }
 
+/// One way that winds through the whole map, far longer than the map is wide.
+TEST(ReachField, LongWaysAreNotConfusedWithEarlierSearches) {
+  const GridGeometry g{.width = 41, .height = 41};
+  Grid<std::uint8_t> mask(g, 1);
+  for (int y = 1; y < g.height; y += 2)
+    for (int x = 0; x < g.width; ++x) mask[Cell{x, y}] = x == (y % 4 == 1 ? g.width - 1 : 0);
+  std::vector<std::uint32_t> all(g.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  ReachField reach(g);
+  reach.update(mask, all);
+  DistanceField full;
+  for (int search = 0; search < 6; ++search) {
+    const Cell source{0, search % 2 == 0 ? 0 : g.height - 1};
+    const Cell sources[] = {source};
+    full.compute(mask, sources);
+    reach.begin(source);
+    reach.extend(search < 4 ? ReachField::kNoLimit : 30.0);
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      if (search >= 4 && !reach.reached(g.cell_at(i))) continue;
+      ASSERT_EQ(reach.metres(g.cell_at(i)), full.metres(g.cell_at(i))) << "search " << search << ", cell " << i;
+    }
+  }
+}
+
 TEST(ReachField, FindsNothingBeforeItBegins) {
   const GridGeometry g{.width = 5, .height = 5};
   ReachField reach(g);
