@@ -23,17 +23,18 @@ for world in $("$outrider" list worlds | awk '{print $1}') "$@"; do
   [[ $world == *@* ]] && where+=(--resolution "${world#*@}")
   for sensing in $sensings; do
     for coordinator in $coordinators; do
-      run=("$outrider" explore "${where[@]}" --robots 4 --coordinator "$coordinator" --sensing "$sensing" -q --force --out)
+      run=("$outrider" explore "${where[@]}" --robots 4 --coordinator "$coordinator" --sensing "$sensing" -q --out)
       code=0
+      rm -rf "$folder/a" "$folder/b"
       "${run[@]}" "$folder/a" || code=$?
-      verdict=$(grep -o '"status": "[a-z_]*"' "$folder/a/run.json" | head -1 | cut -d'"' -f4 || echo none)
+      verdict=$(grep -o '"status": "[a-z_]*"' "$folder/a/run.json" 2>/dev/null | head -1 | cut -d'"' -f4) || verdict=none
       note=
       if ((twice)); then
         "${run[@]}" "$folder/b" || true
         for side in a b; do sed -i '/"timing"/,$d; s#'"$folder/$side"'#RUN#' "$folder/$side/run.json"; done
         diff -rq -x report.html "$folder/a" "$folder/b" >/dev/null || note=" DIFFERS"
       fi
-      [[ $verdict == explored || $verdict == unreachable_left ]] && [[ -z $note ]] || bad=1
+      [[ $verdict == explored || $verdict == unreachable_left ]] && ((code <= 1)) && [[ -z $note ]] || bad=1
       printf '%-28s %-6s %-18s %s (%d)%s\n' "$(basename "$world")" "$sensing" "$coordinator" "$verdict" "$code" "$note"
     done
   done

@@ -162,8 +162,12 @@ class BundleCoordinator : public Coordinator {
         negotiate_ ? auction::nearest_allocation(problem) : auction::ssa(problem, auction::empty_allocation(problem)).allocation;
     std::vector<Award> awards;
     for (std::size_t i = 0; i < table.robots(); ++i)
-      for (const int p : costs.order(static_cast<int>(i), allocation[i]))
-        awards.push_back(table.award(i, static_cast<std::size_t>(p), -from[i][static_cast<std::size_t>(p)]));
+      for (const int p : costs.order(static_cast<int>(i), allocation[i])) {
+        const auto stop = static_cast<std::size_t>(p);
+        if (table.entry(i, stop) != nullptr) awards.push_back(table.award(i, stop, -from[i][stop]));
+        else awards.push_back({table.sheet(i).robot, stops[stop].task, stops[stop].stand, 0.0});  // near others it listed
+      }
+      }
     return awards;
   }
 
