@@ -48,7 +48,7 @@ const std::vector<Lodger> kLodgers{{"mrpt/", {"slam_glue"}, false},
                                    {"sodium", {"link"}, false},
                                    {"httplib", {"apps"}},
                                    {"CLI/", {"apps"}},
-                                   {"opencv2/", {"slam_glue", "decision", "apps"}, false},
+                                   {"opencv2/", {"slam_glue", "decision", "report", "apps"}, false},
                                    {"nlohmann/", {"report", "explorer", "apps"}},
                                    {"thread", {"slam_glue", "link", "sim", "explorer", "report", "apps"}},
                                    {"chrono", {"slam_glue", "link", "sim", "explorer", "report", "apps"}}};
