@@ -167,7 +167,6 @@ class BundleCoordinator : public Coordinator {
         if (table.entry(i, stop) != nullptr) awards.push_back(table.award(i, stop, -from[i][stop]));
         else awards.push_back({table.sheet(i).robot, stops[stop].task, stops[stop].stand, 0.0});  // near others it listed
       }
-      }
     return awards;
   }
 

@@ -46,7 +46,7 @@ class Planner {
     Tours tours = greedy();
     double cost = cost_of(tours);
     for (Tours& start : starts)
-      if (const double own = cost_of(start); own < cost) cost = own, tours = std::move(start);
+      if (const double own = cost_of(start); own < cost && seen_count_ >= aim_) cost = own, tours = std::move(start);
     double best_cost = cost;
     Tours best = tours;
     for (int k = 0; k < options_.evaluations; ++k) {
@@ -57,7 +57,7 @@ class Planner {
       if (changed_cost > cost && std::exp((cost - changed_cost) / heat) < uniform()) continue;
       tours = std::move(changed);
       cost = changed_cost;
-      if (cost < best_cost) best_cost = cost, best = tours;
+      if (cost < best_cost && seen_count_ >= aim_) best_cost = cost, best = tours;
     }
     const double time_s = evaluate(best);
     return {seen_count_ >= aim_ ? std::optional(time_s) : std::nullopt, std::move(best)};
@@ -148,7 +148,8 @@ class Planner {
     return now_s + fine_s(aim_ - seen_count_);
   }
 
-  /// What the missing cells would cost a team that sweeps badly: more than any sensible plan pays for them.
+  /// What the missing cells would cost a team that sweeps badly. The search may pass through plans that miss some; it
+  /// never keeps one.
   double fine_s(int missing) const {
     double rate = 0.0;
     for (const RobotSpec& robot : team_) rate += 0.2 * robot.speed * robot.range;

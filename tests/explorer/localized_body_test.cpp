@@ -42,7 +42,7 @@ Error drive(Localization localization, std::uint64_t seed) {
   Error error;
   body.sense();
   std::vector<Point> way;
-  for (int round = 0; round < 3; ++round) way.insert(way.end(), {{12, 2}, {12, 6.5}, {10, 8.5}, {2, 8.5}, {2, 2}});
+  for (int round = 0; round < 3; ++round) way.insert(way.end(), {{12, 2}, {12, 6.5}, {10.4, 6.5}, {10, 8.5}, {1.2, 8.5}, {1.2, 2}});
   body.follow(way);
   for (int step = 0; step < 1300 && !error.arrived; ++step) {
     simulator.step();
