@@ -14,6 +14,7 @@
 #include "link/lc02.hpp"
 #include "link/multicast.hpp"
 #include "link/private_network.hpp"
+#include "link/team_key.hpp"
 #include "live.hpp"
 #include "live_team.hpp"
 #include "maps_module.hpp"
@@ -161,6 +162,7 @@ void team(Options o, Context& ctx) {
   const std::vector<RobotSpec> robots = team_of(o.live.mission, world, ctx.seed);
   mission_settings(o.live.mission, ctx.seed, robots);  // bad flags stop here, before any process
   process_faults(o, robots);
+  if (!o.live.key_file.empty()) link::TeamKey::read(o.live.key_file);
   const std::string network = find_network(o);
   if (ctx.verbose) fmt::print(stderr, "outrider: on {}\n", network);
   if (o.live.run == 0) o.live.run = static_cast<std::int32_t>(getpid());
