@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bench.hpp"
@@ -37,7 +38,9 @@ void list(const std::string& what, const Context& ctx) {
     fmt::print("{}\n", document.dump(2));
     return;
   }
-  for (const auto& [name, text] : lines) fmt::print("{:<18}{}\n", name, text);
+  std::size_t width = 0;
+  for (const auto& line : lines) width = std::max(width, line.first.size());
+  for (const auto& [name, text] : lines) fmt::print("{:<{}}  {}\n", name, width, text);
 }
 
 }  // namespace
