@@ -123,9 +123,11 @@ std::string bench_html(const BenchResult& result, std::span<const Table> tables,
   for (const std::string& note : result.design.notes) notes += fmt::format("<li>{}</li>\n", escape_html(note));
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>bench {0}</title>\n"
-      "<style>\n{1}\nfigure.table {{overflow-x: auto}} figure.table td {{text-align: right; white-space: nowrap}}\n"
-      "</style>\n</head>\n<body>\n<main>\n<h1>bench {0}</h1>\n<p>Seed {2}{3}.</p>\n{4}\n{5}\n<section>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
+      "<style>\n{1}\nfigure.table {{overflow-x: auto}} figure.table td, figure.table thead th {{text-align: right; "
+      "white-space: nowrap}} figure.table th:first-child {{text-align: left}} "
+      "figure.table {{counter-increment: none}} figure.table figcaption::before {{content: none}}\n"
+      "</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n<p>Seed {2}{3}.</p>\n{4}\n{5}\n<section>\n"
       "<h2>Settings</h2>\n<table class=\"list\"><tbody>\n{6}</tbody></table>\n<ul>\n{7}</ul>\n</section>\n</main>\n"
       "</body>\n</html>\n",
       escape_html(result.design.bench), style_sheet(), result.seed, result.interrupted ? ", interrupted" : "", figures,
