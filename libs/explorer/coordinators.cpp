@@ -149,7 +149,7 @@ const std::vector<Row>& table() {
       {{"continuous", "free robots bid for one frontier cluster each, the busy keep theirs (Lozenguez 2015, Algorithm 1)"}, make_bundle_coordinator},
       {{"ssa", "bundles of frontier clusters by sequential simultaneous auctions (Lozenguez 2015, section 5)"}, make_bundle_coordinator},
       {{"dssa", "the same, negotiated robot by robot with messages (Lozenguez 2015, section 5.3)"}, make_bundle_coordinator},
-      {{"scout", "tours for the whole team through the world as it is hoped to be (Outrider's own)"}, make_scout},
+      {{"scout", "what team-mates will leave to see per way, weighed again while driving (Outrider's own)"}, make_scout},
   };
   return rows;
 }
