@@ -36,8 +36,9 @@ TEST(ReachField, EqualsTheFullFieldAsFarAsItWentWhateverCameBefore) {
         reach.extend(limit);
         for (std::size_t i = 0; i < g.size(); ++i) {
           const Cell c = g.cell_at(i);
-          if (full.metres(c) <= limit) ASSERT_EQ(reach.metres(c), full.metres(c)) << "cell " << i << " to " << limit;
-          else if (reach.reached(c)) ASSERT_EQ(reach.metres(c), full.metres(c)) << "cell " << i;
+          if (full.metres(c) <= limit || reach.reached(c)) {
+            ASSERT_EQ(reach.metres(c), full.metres(c)) << "cell " << i << " to " << limit;
+          }
         }
       }
       reach.extend(ReachField::kNoLimit);

@@ -29,7 +29,9 @@ TEST_P(Networks, HealAndEndWithOneMap) {
     if (hash.empty()) hash = link["map_hash"];
     EXPECT_EQ(link["map_hash"], hash) << robot;
     if (std::getenv("OUTRIDER_SHOW") != nullptr) std::fprintf(stderr, "%s %s: %s\n", GetParam(), robot, link.dump().c_str());
-    if (std::string(GetParam()) == "interface" && robot == std::string("b")) EXPECT_GT(link["reopened"].get<int>(), 0);
+    if (std::string(GetParam()) == "interface" && robot == std::string("b")) {
+      EXPECT_GT(link["reopened"].get<int>(), 0);
+    }
   }
 }
 
