@@ -163,7 +163,8 @@ Experiment experiment_of(const Options& o, const BenchArguments& arguments) {
                       {"explored_fraction", "", 4, false, false}};
   e.design.references = {"breaks+dvf"};
   e.design.options = {{"worlds", o.worlds}, {"speed", o.speed}, {"range", o.range}, {"radius", o.radius},
-                      {"dvf_gamma", o.reading.gamma}, {"dvf_reach", o.reading.reach}, {"dvf_kappa", o.reading.kappa}};
+                      {"dvf_gamma", o.reading.gamma}, {"dvf_reach", o.reading.reach}, {"dvf_kappa", o.reading.kappa},
+                      {"dvf_intentions", o.reading.intentions}};
   e.run = [grounds, chosen, o](const Trial& trial) {
     const auto condition = std::find_if(chosen->begin(), chosen->end(), [&](const auto& c) { return c.name == trial.algorithm; });
     return std::optional(run_trial(grounds->at(trial.case_name), *condition, o, trial));
@@ -191,6 +192,7 @@ BuildExperiment declare(CLI::App& verb) {
   verb.add_option("--dvf-reach", o->reading.reach, "l of Pr(s'|s_j) = exp(-d/l) [m]")
       ->check(number_in(0.01, 1e3))->capture_default_str();
   verb.add_option("--dvf-kappa", o->reading.kappa, "weight of the others")->check(number_in(0.0, 1e3))->capture_default_str();
+  verb.add_flag("--dvf-intentions", o->reading.intentions, "the others' waves start from their goals too");
   return [o](const BenchArguments& arguments) { return experiment_of(*o, arguments); };
 }
 

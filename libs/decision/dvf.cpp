@@ -29,8 +29,9 @@ std::vector<double> DvfPlanner::shares(const Grid<std::uint8_t>& mask, std::span
                                        std::span<const Rival> rivals) {
   std::vector<double> sums(goals.size(), 0.0);
   for (const Rival& rival : rivals) {
-    const Cell source[] = {rival.at};
-    wave_.compute(rival.passable != nullptr ? *rival.passable : mask, source, -reading_.reach * std::log(kNegligible));
+    std::vector<Cell> sources{rival.at};
+    if (rival.goal) sources.push_back(*rival.goal);
+    wave_.compute(rival.passable != nullptr ? *rival.passable : mask, sources, -reading_.reach * std::log(kNegligible));
     for (std::size_t k = 0; k < goals.size(); ++k)
       if (wave_.reached(goals[k])) sums[k] += std::exp(-wave_.metres(goals[k]) / reading_.reach);
   }

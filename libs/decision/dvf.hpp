@@ -18,6 +18,7 @@ struct DvfReading {
   double gamma = 0.9;   ///< discount per metre, in (0, 1)
   double reach = 3.0;   ///< l: a wave from s_j gives Pr(s'|s_j) = exp(-d(s_j, s') / l) [m]
   double kappa = 1.0;   ///< weight of the others as a whole
+  bool intentions = false;  ///< the wave starts from where a robot is and from where it is heading
   Motion motion{};      ///< of the own robot
 };
 
@@ -25,6 +26,7 @@ struct DvfReading {
 struct Rival {
   Cell at;                                      ///< s_j, its last known state
   const Grid<std::uint8_t>* passable = nullptr; ///< for robots of its kind; null: of our own kind
+  std::optional<Cell> goal{};                   ///< where it was heading then, if the reading counts intentions
 };
 
 /// Solves eq. 3 with eq. 7 (Algorithm 1) for robot i: exploration goals g are worth R = 1, and what the others may be

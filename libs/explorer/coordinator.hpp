@@ -51,7 +51,7 @@ struct Situation {
   const decision::Passability& passable;       ///< for this robot
   Cell at;                                     ///< the cell it is in
   std::span<const Teammate> team;              ///< team-mates heard recently
-  std::span<const Teammate> known;             ///< everybody ever heard, as last heard
+  std::span<const Teammate> known;             ///< everybody ever heard, as last heard; placed where last heard or seen
   std::optional<Task> task;                    ///< the current one
   bool needs_task = false;                     ///< it is done, void, or there is none, and the map may offer one
   double explored_rate = 0.0;                  ///< A(k) [m^2/s]

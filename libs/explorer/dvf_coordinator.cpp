@@ -19,7 +19,8 @@ enum class Others {
 
 class DvfCoordinator : public Coordinator {
  public:
-  DvfCoordinator(Others others, const decision::DvfReading& reading) : others_(others), planner_(reading) {}
+  DvfCoordinator(Others others, const decision::DvfReading& reading)
+      : others_(others), intentions_(reading.intentions), planner_(reading) {}
 
   Decision decide(const Situation& s) override {
     const bool due = s.needs_task || (s.task && s.now_s >= plan_at_s_);
@@ -45,7 +46,8 @@ class DvfCoordinator : public Coordinator {
       if (mate.status.done) continue;
       const Cell at = s.map.geometry().cell_of(mate.status.pose.position());
       if (!s.map.contains(at)) continue;
-      result.push_back({at, mate.status.radius == s.spec.radius ? nullptr : &mask_of(mate.status.radius, s.map)});
+      result.push_back({at, mate.status.radius == s.spec.radius ? nullptr : &mask_of(mate.status.radius, s.map),
+                        intentions_ ? mate.status.goal : std::nullopt});
     }
     return result;
   }
@@ -57,6 +59,7 @@ class DvfCoordinator : public Coordinator {
   }
 
   Others others_;
+  bool intentions_;
   decision::DvfPlanner planner_;
   std::map<double, Grid<std::uint8_t>> kinds_;  // masks of the other kinds, for one decision
   double plan_at_s_ = 0.0;

@@ -12,6 +12,8 @@ constexpr double kPatience = 0.3;        // [s] blocked before anything is done 
 constexpr double kStuck = 3.0;           // [s] blocked before detours are given up and room is asked for
 constexpr double kTryAgain = 0.5;        // [s] between attempts
 constexpr double kGiveUp = 15.0;         // [s] blocked before the task is given back
+constexpr double kDeferred = 20.0;       // [s] until a task that was blocked is tried again
+constexpr int kMostRetreats = 4;         // from the silent, for one task
 constexpr int kMostBlocked = 3;          // times that a task is given back before it is given up
 constexpr double kRoomTimeout = 8.0;     // [s] that room is made for somebody, beside the way there
 constexpr double kMostWait = 6.0;        // [s] that a close team-mate is waited for
@@ -86,7 +88,10 @@ void Explorer::keep_making_room(std::span<const decision::Neighbour> around, dou
   if (task_ && !plan(task_->stand)) {
     end_task("no way", now_s);
   } else if (!task_) {
-    if (phase_ == Phase::kDone && settings_.return_home) phase_ = Phase::kReturning;
+    if (phase_ == Phase::kDone && settings_.return_home && !stranded_) {
+      phase_ = Phase::kReturning;
+      deadline_s_ = now_s + 2.0 * patience();
+    }
     if (phase_ == Phase::kReturning) arrived_ = true;  // go_home() plans again
     else stop();
   }
@@ -139,6 +144,8 @@ std::vector<Cell> Explorer::straight_on(Point from) const {
 /// want. The robot with the higher number tries first; the other follows when that does not help.
 void Explorer::retreat_from(const decision::Neighbour& silent, std::span<const decision::Neighbour> around, double now_s) {
   if (now_s < blocked_since_s_ + kStuck + (self_ < silent.robot ? kRoomTimeout : 0.0)) return;
+  if (retreats_ >= kMostRetreats) return;  // it may be dead
+  ++retreats_;
   decision::Neighbour guess = silent;
   guess.way.assign(trail_.rbegin(), trail_.rend());
   make_room(guess, around, now_s);
@@ -189,6 +196,15 @@ void Explorer::coordinate_locally(double now_s) {
   }
 }
 
+/// Somebody else may get through to the task, or this robot later; after some attempts it is given up.
+void Explorer::give_back(const char* how, double now_s) {
+  if (++blocked_tries_[map_.states().geometry().index(task_->cell)] >= kMostBlocked)
+    board_.give_up(task_->cell, false, settings_.grain.spacing);
+  else
+    board_.defer(task_->cell, settings_.grain.spacing, now_s + kDeferred);
+  end_task(how, now_s);
+}
+
 /// Blocked by somebody: drive around, or ask to be let through, or in the end give the task back.
 void Explorer::resolve_block(double now_s) {
   if (!blocked_ || way_.empty()) {
@@ -206,11 +222,7 @@ void Explorer::resolve_block(double now_s) {
   if (now_s > blocked_since_s_ + kGiveUp && !making_room_for_) {
     blocked_since_s_ = -1.0;
     asks_.reset();
-    if (task_) {
-      if (++blocked_tries_[map_.states().geometry().index(task_->cell)] >= kMostBlocked)
-        board_.give_up(task_->cell, false, settings_.grain.spacing);
-      end_task("blocked", now_s);
-    }
+    if (task_) give_back("blocked", now_s);
     stop();
     return;
   }

@@ -40,6 +40,9 @@ void Explorer::sense(double now_s) {
   blocked_ = sensing.blocked;
   note_trail();
   sightings_ = sensing.sightings;
+  for (const Sighting& seen : sightings_)  // whoever is in view is known to be there, heard or not
+    for (Teammate& mate : team_)
+      if (mate.robot == seen.robot) mate.status.pose = {seen.position.x, seen.position.y, mate.status.pose.theta};
   take_in(sensing);
   note_news(now_s);
   share();
@@ -157,14 +160,13 @@ void Explorer::check_task(double now_s) {
     if (!board_.is_worth_it(map_.states(), task_->stand)) return end_task("too little left", now_s);
   }
   if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
-    board_.give_up(task_->cell, task_->stand == task_->cell, settings_.grain.spacing);
     stop();
-    return end_task("out of time", now_s);
+    return give_back("out of time", now_s);
   }
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
-    board_.give_up(task_->cell, task_->stand == task_->cell, settings_.grain.spacing);
+    board_.give_up(task_->cell, task_->stand == task_->cell, settings_.grain.spacing, &passable_);
     end_task("not observable", now_s);
   }
 }
@@ -200,6 +202,7 @@ void Explorer::run_coordinator(double now_s) {
   const std::function<std::vector<BidEntry>(const TaskGrain&)> tasks = [this](const TaskGrain& grain) {
     return board_.entries(map_.states(), passable_, base(), grain);
   };
+  const bool waits = board_.any_deferred(now_s);
   const bool needs_task = !task_ && phase_ == Phase::kExploring &&
                           (map_news_s_ > refused_s_ || now_s >= refused_s_ + kAskAgain);
   const Situation situation{now_s, self_, spec_, pose_, map_.states(), passable_, here(), heard_, team_,
@@ -208,6 +211,7 @@ void Explorer::run_coordinator(double now_s) {
   inbox_.clear();
   for (Message& message : decision.send) bus_.send(std::move(message));
   for (const AuctionRecord& record : decision.records) sink_(now_s, record);
+  if (waits && decision.verdict == Decision::Verdict::kNothing) decision.verdict = Decision::Verdict::kIdle;
   apply(decision, now_s);
 }
 
@@ -222,6 +226,7 @@ void Explorer::apply(const Decision& decision, double now_s) {
       return;
     }
     task_ = decision.task;
+    retreats_ = 0;
     arrived_s_ = now_s;
     deadline_s_ = now_s + patience();
     making_room_for_.reset();
@@ -248,6 +253,9 @@ void Explorer::nothing_left(double now_s) {
   if (settings_.return_home && here() != home) phase_ = Phase::kReturning;
   sink_(now_s, PhaseEvent{self_, phase_ == Phase::kDone ? "done" : "returning"});
   if (!making_room_for_) stop();
+  if (phase_ == Phase::kReturning && !making_room_for_) plan(home);
+  deadline_s_ = now_s + 2.0 * patience();
+  retreats_ = 0;
   status_news_ = true;
 }
 
@@ -257,6 +265,12 @@ void Explorer::go_home(double now_s) {
     phase_ = map_news_s_ > refused_s_ ? Phase::kExploring : Phase::kDone;  // there may be something left after all
     priority_ = base_priority();
     sink_(now_s, PhaseEvent{self_, "home"});
+  } else if (now_s > deadline_s_) {  // a dead team-mate may lie in the only way
+    phase_ = Phase::kDone;
+    stranded_ = true;
+    priority_ = base_priority();
+    if (!making_room_for_) stop();
+    sink_(now_s, PhaseEvent{self_, "stranded"});
   } else if (arrived_ && !making_room_for_ && !held_) {
     plan(home);
   }
@@ -265,6 +279,7 @@ void Explorer::go_home(double now_s) {
 void Explorer::restart(double now_s) {
   task_.reset();
   way_.clear();
+  stranded_ = false;
   phase_ = Phase::kExploring;
   asks_.reset();
   making_room_for_.reset();

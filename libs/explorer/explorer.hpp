@@ -53,7 +53,7 @@ struct TaskEndEvent {
 };
 struct PhaseEvent {
   RobotId robot;
-  const char* phase;  ///< "idle", "done", "returning", "home", "making room"
+  const char* phase;  ///< "idle", "done", "returning", "home", "stranded", "making room"
 };
 struct FaultEvent {
   RobotId robot;
@@ -120,6 +120,7 @@ class Explorer {
   void trim_way();
   void give_way(double now_s);
   void resolve_block(double now_s);
+  void give_back(const char* how, double now_s);
   void coordinate_locally(double now_s);
   decision::LocalAction local_action(const decision::Neighbour& mate) const;
   bool make_room(const decision::Neighbour& asker, std::span<const decision::Neighbour> around, double now_s);
@@ -186,6 +187,8 @@ class Explorer {
   double making_room_until_s_ = 0.0;
   double touched_since_s_ = 0.0;       // by somebody silent, while idle
   int stood_aside_ = 0;                // times since there was something to do
+  int retreats_ = 0;                   // from silent robots in the way, for this task
+  bool stranded_ = false;              // gave up driving home
   bool held_ = false;                  // stopped on the way, to let somebody pass
   double wait_until_s_ = -1e9;         // nobody is waited for longer than this ...
   double no_wait_until_s_ = -1e9;      // ... and then not again until this

@@ -92,11 +92,12 @@ void FrontierTasks::cut(Tile& tile, Cell at, const decision::Passability& passab
   tile.dirty = false;
 }
 
-/// Visits the frontier cells of [low, high) that were not given up, row by row.
+/// Visits the frontier cells of [low, high) that were neither given up nor deferred, row by row.
 template <class Visit>
 void FrontierTasks::for_open(Cell low, Cell high, Visit&& visit) const {
   frontiers_.for_frontier(low, high, [&](Cell c) {
-    if (given_up_.empty() || !given_up_.contains(geometry_.index(c))) visit(c);
+    const std::size_t index = geometry_.index(c);
+    if ((given_up_.empty() || !given_up_.contains(index)) && (deferred_.empty() || !deferred_.contains(index))) visit(c);
   });
 }
 
@@ -140,15 +141,37 @@ bool FrontierTasks::frontier_near(Cell c, double spacing) const {
   return false;
 }
 
-void FrontierTasks::give_up(Cell task, bool tried, double spacing) {
+/// Visits the frontier cells, by index, within a block's reach of `task`, whose tiles are to be cut anew.
+template <class Visit>
+void FrontierTasks::for_block(Cell task, double spacing, Visit&& visit) {
   const int reach = block_reach(spacing);
   for (int y = task.y - reach; y <= task.y + reach; ++y)
     for (int x = task.x - reach; x <= task.x + reach; ++x) {
       if (!is_frontier({x, y})) continue;
-      const std::size_t index = geometry_.index({x, y});
-      given_up_[index] |= tried;
-      if (block_ != 0) tile_of(index).dirty = true;
+      visit(Cell{x, y}, geometry_.index({x, y}));
+      if (block_ != 0) tile_of(geometry_.index({x, y})).dirty = true;
     }
+}
+
+void FrontierTasks::give_up(Cell task, bool tried, double spacing, const decision::Passability* spare) {
+  for_block(task, spacing, [&](Cell c, std::size_t index) {
+    if (c == task || spare == nullptr || !spare->passable(c)) given_up_[index] |= tried;
+  });
+}
+
+void FrontierTasks::defer(Cell task, double spacing, double until_s) {
+  for_block(task, spacing, [&](Cell, std::size_t index) { deferred_[index] = until_s; });
+}
+
+bool FrontierTasks::any_deferred(double now_s) {
+  bool waits = false;
+  std::erase_if(deferred_, [&](const auto& entry) {
+    const auto [index, until_s] = entry;
+    if (until_s > now_s && frontiers_.is_frontier(index)) return waits = true, false;
+    if (block_ != 0) tile_of(index).dirty = true;
+    return true;
+  });
+  return waits;
 }
 
 bool FrontierTasks::tried_in_vain(std::size_t index) const {

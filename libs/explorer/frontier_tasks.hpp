@@ -2,6 +2,7 @@
 // The frontier cut into tasks, kept up to date from what changes.
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -66,8 +67,13 @@ class FrontierTasks {
   bool is_frontier(Cell c) const { return frontiers_.is_frontier(c); }
   /// Some frontier is left within a block's reach of `c`.
   bool frontier_near(Cell c, double spacing) const;
-  /// Takes the frontier around `task` off the list for good. `tried`: the robot stood right there.
-  void give_up(Cell task, bool tried, double spacing);
+  /// Takes the frontier around `task` off the list for good. `tried`: the robot stood right there. Cells that a robot can
+  /// stand on by `spare` have a view of their own and stay on the list, but for the task itself; null spares none.
+  void give_up(Cell task, bool tried, double spacing, const decision::Passability* spare = nullptr);
+  /// Takes the frontier around `task` off the list until `until_s`.
+  void defer(Cell task, double spacing, double until_s);
+  /// Puts back what was deferred until now or earlier. True when some frontier still waits. O(deferred).
+  bool any_deferred(double now_s);
   /// Was the cell given up after the robot stood right there?
   bool tried_in_vain(std::size_t index) const;
 
@@ -82,6 +88,8 @@ class FrontierTasks {
   void cut(Tile& tile, Cell at, const decision::Passability& passable);
   void cut_block(Cell low, Cell high, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const;
   template <class Visit>
+  void for_block(Cell task, double spacing, Visit&& visit);
+  template <class Visit>
   void for_open(Cell low, Cell high, Visit&& visit) const;
   int block_reach(double spacing) const { return static_cast<int>(spacing / 2.0 / geometry_.resolution); }
 
@@ -92,6 +100,7 @@ class FrontierTasks {
   int edge_ = 0;            // of a tile [cells]
   Grid<Tile> tiles_;        // in units of tiles
   std::unordered_map<std::size_t, bool> given_up_;  // cell -> tried; looked up, never iterated
+  std::map<std::size_t, double> deferred_;          // cell -> until [s]
   decision::Footprint footprint_;
   double most_gain_, least_gain_;
   int revision_edge_;                // of a block of revisions_: the footprint reaches one block far at most [cells]

@@ -57,8 +57,15 @@ class TaskBoard {
   bool is_worth_it(const OccupancyGrid& map, Cell stand) const {
     return tasks_.least_gain() == 0.0 || tasks_.unseen(map, stand) >= tasks_.least_gain();
   }
-  /// The frontier around `task` is never tried again. `tried`: the robot stood right there and saw nothing new.
-  void give_up(Cell task, bool tried, double spacing) { tasks_.give_up(task, tried, spacing); }
+  /// The frontier around `task` is never tried again. `tried`: the robot stood right there and saw nothing new. See
+  /// FrontierTasks::give_up().
+  void give_up(Cell task, bool tried, double spacing, const decision::Passability* spare = nullptr) {
+    tasks_.give_up(task, tried, spacing, spare);
+  }
+  /// The frontier around `task` is not offered before `until_s`: a team-mate blocks the way.
+  void defer(Cell task, double spacing, double until_s) { tasks_.defer(task, spacing, until_s); }
+  /// Offers again what was deferred until now or earlier. True when some frontier still waits.
+  bool any_deferred(double now_s) { return tasks_.any_deferred(now_s); }
   /// Frontier clusters of `map` with the reason why this robot would leave each. O(cells).
   std::vector<Left> left(const OccupancyGrid& map) const;
 

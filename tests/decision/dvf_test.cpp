@@ -93,6 +93,15 @@ TEST(DvfPlanner, LeavesANearGoalToTheRobotThatStandsThere) {
   EXPECT_FALSE(plan->crowded_out);
 }
 
+TEST(DvfPlanner, ARivalRepelsFromWhereItIsHeadingWhenIntentionsCount) {
+  const auto mask = free_cells(test::grid_from_ascii(kTwoDoors));
+  const Cell a = test::cell_marked(kTwoDoors, 'a'), b = test::cell_marked(kTwoDoors, 'b');
+  const Cell self = test::cell_marked(kTwoDoors, 's');
+  const std::vector<Cell> goals{a, b};
+  const std::vector<Rival> rival{{.at = self, .goal = a}};
+  EXPECT_EQ(DvfPlanner({}).plan(mask, self, goals, rival)->goal, b);
+}
+
 TEST(DvfPlanner, CrowdedOutItFallsBackOnItsOwnValues) {
   const auto mask = free_cells(test::grid_from_ascii(kTwoDoors));
   const Cell a = test::cell_marked(kTwoDoors, 'a');

@@ -120,6 +120,30 @@ map:
   EXPECT_TRUE(result.left.empty());
 }
 
+// Where one frontier cell cannot be looked behind, its neighbour can: corners of narrow passages, short-sighted robot.
+TEST(Mission, ACornerIsSeenFromTheNextCell) {
+  const sim::World world = sim::parse_world(R"(resolution: 0.5
+map:
+#########
+#..0....#
+#.#####.#
+#...###.#
+#######.#
+#.......#
+#.#######
+#.......#
+#########
+)", "corners");
+  std::vector<RobotSpec> team = team_for(world, 1);
+  team[0].range = 0.8;
+  for (const auto& info : coordinators()) {
+    MissionSettings settings;
+    settings.coordinator = info.name;
+    const auto result = run_mission(world.map, team, settings);
+    EXPECT_EQ(unknown_but_reachable(world.map, team, result.map), 0U) << info.name;
+  }
+}
+
 TEST(Mission, AGapTooNarrowForTheRobotIsReportedWithItsReason) {
   const sim::World world = sim::parse_world(R"(resolution: 0.5
 map:

@@ -1,0 +1,28 @@
+#pragma once
+// A short random mission, drawn from a number: world, team, radio, faults.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "explorer/mission.hpp"
+
+namespace outrider::test {
+
+struct Scenario {
+  OccupancyGrid truth;
+  std::vector<RobotSpec> team;
+  explorer::MissionSettings settings;
+  std::string text;  ///< in words
+};
+
+/// The same number gives the same scenario.
+Scenario draw_scenario(std::uint64_t number);
+
+/// What went wrong, one line each; empty when nothing did. Runs the scenario twice.
+std::vector<std::string> check_scenario(const Scenario& scenario);
+
+/// The true map with start cells (a, b, ...), end cells (A, B, ...), and '?' where somebody alive does not know a free cell.
+std::string picture(const Scenario& scenario, const explorer::MissionResult& result);
+
+}  // namespace outrider::test
