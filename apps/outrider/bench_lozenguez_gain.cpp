@@ -19,7 +19,6 @@ using explorer::Protocol;
 
 constexpr int kMostGoals = 14, kDraws = 50, kRobots = 3;
 constexpr int kMany = 7;  // goals from which the paper's means are about 20 %
-constexpr double kLongest = 8.0;
 
 struct Options {
   bool return_home = false;
@@ -164,7 +163,7 @@ std::string figures(const report::BenchResult& result) {
 }
 
 Experiment experiment_of(const Options& o, const BenchArguments& arguments) {
-  auto ground = std::make_shared<Ground>(Ground{o, lozenguez_map("urban", kLongest), lozenguez_map("labyrinth", kLongest), variants()});
+  auto ground = std::make_shared<Ground>(Ground{o, lozenguez_map("urban"), lozenguez_map("labyrinth"), variants()});
   Experiment e;
   e.design.bench = "lozenguez2015-gain";
   const int all = kMostGoals * kDraws;

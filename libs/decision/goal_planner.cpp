@@ -2,7 +2,7 @@
 
 namespace outrider::decision {
 
-int exact_size(int goals) { return goals <= 14 ? 14 : goals <= 20 ? 12 : 10; }
+int exact_size(int goals) { return goals <= 14 ? 14 : goals <= 20 ? 12 : 9; }
 
 GoalPlanner::GoalPlanner(const TopologicalMap& map, std::vector<int> goals, std::vector<int> places,
                          std::optional<int> home, std::optional<int> exact_up_to)
