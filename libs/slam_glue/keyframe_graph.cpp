@@ -12,16 +12,17 @@ constexpr double kFarView = 8.0;        // echoes from farther away say little a
 enum class Verdict { kSilent, kAgrees, kConflicts };
 
 /// What one scan says about a point, given in its sensor's frame.
-Verdict verdict(const LaserScan& scan, Point p) {
-  constexpr double kNear = 0.15;    // of the range at which the beam ended [m]
-  constexpr double kSlope = 0.03;   // and this share of the range: beams widen, walls are grazed
-  constexpr double kThrough = 0.4;  // a beam that went so much farther went through the point [m]
+Verdict verdict(const LaserScan& scan, const SurfacePoint& q, const SightLimits& limits) {
+  const Point p = q.p;
   const double range = std::hypot(p.x, p.y);
   const double beam = wrap_angle(std::atan2(p.y, p.x) - scan.angle_min) / scan.angle_increment;
   const auto n = static_cast<double>(scan.ranges.size());
   const double turn = std::abs(2.0 * kPi / scan.angle_increment);
   const double b = std::round(beam < -0.5 ? beam + turn : beam);
   if (b < 1.0 || b > n - 2.0) return Verdict::kSilent;
+  // A grazed wall moves far along the beam when it moves a little.
+  const double facing =
+      limits.square && q.has_normal() && range > 0.0 ? std::abs(q.normal.x * p.x + q.normal.y * p.y) / range : 1.0;
   bool through = true;
   for (int k = -1; k <= 1; ++k) {
     const auto i = static_cast<std::size_t>(b + k);
@@ -30,8 +31,8 @@ Verdict verdict(const LaserScan& scan, Point p) {
       continue;
     }
     const double r = scan.ranges[i];
-    if (std::abs(r - range) < kNear + kSlope * range) return Verdict::kAgrees;
-    through = through && r > range + kThrough + kSlope * range;
+    if (std::abs(r - range) < limits.near_m + limits.near_slope * range) return Verdict::kAgrees;
+    through = through && facing * (r - range) > limits.through_m + limits.through_slope * range;
   }
   return through ? Verdict::kConflicts : Verdict::kSilent;
 }
@@ -70,25 +71,49 @@ std::vector<SurfacePoint> KeyframeGraph::gather(std::size_t begin, std::size_t e
   return points;
 }
 
+namespace {
+
+std::vector<Pose2> sensors_from(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of) {
+  std::vector<Pose2> T_sensor_of;
+  for (const std::size_t i : frames)
+    T_sensor_of.push_back(inverse(graph.poses[i] * graph.frames[i].scan.T_robot_sensor) * graph.poses[of]);
+  return T_sensor_of;
+}
+
+}  // namespace
+
 Visibility judge(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of,
                  std::span<const SurfacePoint> points, std::vector<bool>* agrees) {
   Visibility v;
   v.points = points.size();
-  std::vector<Pose2> T_sensor_of;
-  for (const std::size_t i : frames)
-    T_sensor_of.push_back(inverse(graph.poses[i] * graph.frames[i].scan.T_robot_sensor) * graph.poses[of]);
+  const std::vector<Pose2> T_sensor_of = sensors_from(graph, frames, of);
   for (const auto& q : points) {
     bool conflict = false, agree = false;
     for (std::size_t n = 0; n < frames.size() && !agree; ++n) {
-      const Verdict said = verdict(graph.frames[frames[n]].scan, T_sensor_of[n] * q.p);
+      const Verdict said = verdict(graph.frames[frames[n]].scan, T_sensor_of[n] * q, SightLimits{});
       agree = said == Verdict::kAgrees;
       conflict = conflict || said == Verdict::kConflicts;
     }
-    if (agree) ++v.agree;
-    else if (conflict) ++v.conflict;
+    if (agree)
+      ++v.agree;
+    else if (conflict)
+      ++v.conflict;
     if (agrees) agrees->push_back(agree);
   }
   return v;
+}
+
+std::vector<Sightings> sightings(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of,
+                                 std::span<const SurfacePoint> points, const SightLimits& limits) {
+  std::vector<Sightings> seen(points.size());
+  const std::vector<Pose2> T_sensor_of = sensors_from(graph, frames, of);
+  for (std::size_t n = 0; n < frames.size(); ++n)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Verdict said = verdict(graph.frames[frames[n]].scan, T_sensor_of[n] * points[i], limits);
+      seen[i].there += said == Verdict::kAgrees;
+      seen[i].through += said == Verdict::kConflicts;
+    }
+  return seen;
 }
 
 }  // namespace outrider::slam_glue

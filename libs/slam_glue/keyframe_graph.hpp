@@ -47,9 +47,25 @@ struct Visibility {
   }
 };
 
-/// Judges points, given in the frame of keyframe `of`, by the scans of `frames`: a point agrees when some scan ends near
-/// it, conflicts when none does and one passes through it. `agrees`: the verdict on each point. O(points * frames).
+/// How far apart the surfaces of two scans may be and be one, and how much farther a beam must go to have gone through.
+struct SightLimits {
+  double near_m = 0.15, near_slope = 0.03;       ///< [m], and per metre of range: beams widen, walls are grazed
+  double through_m = 0.4, through_slope = 0.03;  ///< likewise
+  bool square = false;                           ///< through_m across the surface instead of along the beam
+};
+
+/// Judges points, given in the frame of keyframe `of`, by the scans of `frames`: a point agrees when some scan ends
+/// near it, conflicts when none does and one passes through it. `agrees`: the verdict on each point. O(points *
+/// frames).
 Visibility judge(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of,
                  std::span<const SurfacePoint> points, std::vector<bool>* agrees = nullptr);
+
+/// How many scans see a point where it is, and how many look through it.
+struct Sightings {
+  int there = 0, through = 0;
+};
+/// Of every point, given in the frame of keyframe `of`, by the scans of `frames`. O(points * frames).
+std::vector<Sightings> sightings(const KeyframeGraph& graph, std::span<const std::size_t> frames, std::size_t of,
+                                 std::span<const SurfacePoint> points, const SightLimits& limits);
 
 }  // namespace outrider::slam_glue

@@ -4,71 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "slam_glue/common_ground.hpp"
 #include "slam_glue/place_search.hpp"
 
 namespace outrider::slam_glue {
 namespace {
 
-constexpr double kReach = 12.0;           // frames farther away do not judge [m]
-constexpr std::size_t kMostJudges = 16;   // frames that judge another's points
-constexpr double kPointCell = 0.2;        // spacing of the judged points [m]
-constexpr double kOverlapCell = 0.2;      // [m]
-constexpr double kNearWay = 50.0;         // metres of driving whose drift is the window of a closer look
+constexpr double kNearWay = 50.0;                  // metres of driving whose drift is the window of a closer look
 constexpr double kStartM = 0.3, kStartRad = 0.05;  // how well a given start is known
-
-/// Frames of the sessions that `wanted` says, nearest views first.
-std::vector<std::size_t> judges(const KeyframeGraph& graph, std::size_t k, const std::vector<bool>& wanted) {
-  const Point view = graph.poses[k] * graph.frames[k].view;
-  std::vector<std::pair<double, std::size_t>> near;
-  for (std::size_t j = 0; j < graph.size(); ++j) {
-    if (!wanted[graph.frames[j].session]) continue;
-    const double apart = distance(view, graph.poses[j] * graph.frames[j].view);
-    if (apart < kReach) near.emplace_back(apart, j);
-  }
-  std::sort(near.begin(), near.end());
-  near.resize(std::min(near.size(), kMostJudges));
-  std::vector<std::size_t> frames;
-  for (const auto& [apart, j] : near) frames.push_back(j);
-  return frames;
-}
-
-/// What one side's scans say of the other side's walls.
-struct Judgement {
-  Visibility seen;
-  std::size_t common = 0, common_hits = 0;  // points of frames that look at common space, and those that agree
-  std::set<std::pair<int, int>> cells;      // of the points that agree
-};
-
-/// Every second frame of the sessions `whose`, judged by those of `by`.
-Judgement judge_sessions(const KeyframeGraph& graph, const std::vector<bool>& whose, const std::vector<bool>& by) {
-  Judgement all;
-  for (std::size_t k = 0; k < graph.size(); k += 2) {
-    if (!whose[graph.frames[k].session]) continue;
-    const auto frames = judges(graph, k, by);
-    if (frames.empty()) continue;
-    const auto points = thinned(graph.frames[k].points, kPointCell);
-    std::vector<bool> agrees;
-    const Visibility v = judge(graph, frames, k, points, &agrees);
-    all.seen.agree += v.agree;
-    all.seen.conflict += v.conflict;
-    all.seen.points += v.points;
-    if (2 * (v.agree + v.conflict) >= v.points) all.common += v.points, all.common_hits += v.agree;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!agrees[i]) continue;
-      const Point p = graph.poses[k] * points[i].p;
-      all.cells.emplace(static_cast<int>(std::floor(p.x / kOverlapCell)), static_cast<int>(std::floor(p.y / kOverlapCell)));
-    }
-  }
-  return all;
-}
 
 /// The merge under way: the joint graph, and which sessions already lie in the map.
 class Merger {
  public:
   Merger(JointGraph& joint, bool starts_known, const MergeSettings& settings)
-      : joint_(joint), starts_known_(starts_known), settings_(settings), closer_(settings.loops),
+      : joint_(joint),
+        starts_known_(starts_known),
+        settings_(settings),
+        closer_(settings.loops),
         placed_(joint.sessions(), false) {
     placed_[0] = true;
     closer_.adopt(joint.closures);
@@ -100,7 +53,7 @@ std::vector<LoopClosure> Merger::closer_look(const Placement& placement) {
   std::vector<PlaceHit> hits;
   for (const PlaceHit& hit : placement.support) {
     joint_.move(g.frames[hit.frame].session, hit.T_map_robot * inverse(g.poses[hit.frame]));
-    const auto near = judges(g, hit.frame, placed_);
+    const auto near = frames_around(g, hit.frame, placed_);
     if (near.empty()) continue;
     auto closure = closer_.check(g, near.front(), hit.frame, kNearWay);
     if (!closure || closure->agreement < settings_.least_place_agreement) continue;
@@ -140,13 +93,15 @@ std::size_t Merger::verify(std::size_t s, MergeRecord& record) const {
   std::vector<bool> this_one(joint_.sessions(), false), others = placed_;
   this_one[s] = true;
   others[s] = false;
-  const Judgement there = judge_sessions(joint_.graph, this_one, others);
-  const Judgement back = judge_sessions(joint_.graph, others, this_one);
+  const CommonGround there = common_ground(joint_.graph, this_one, others);
+  const CommonGround back = common_ground(joint_.graph, others, this_one);
   record.agreement = std::min(there.seen.agreement(), back.seen.agreement());
   const std::size_t common = there.common + back.common;
   record.hit_ratio =
       common == 0 ? 0.0 : static_cast<double>(there.common_hits + back.common_hits) / static_cast<double>(common);
-  record.overlap_m2 = static_cast<double>(there.cells.size()) * kOverlapCell * kOverlapCell;
+  record.overlap_m2 = there.walls_m2;
+  record.landmarks_m2 = std::min(there.landmarks_m2, back.landmarks_m2);
+  record.missing = std::max(there.missing(), back.missing());
   record.closures = 0;
   for (const PoseEdge& e : joint_.graph.edges) {
     const std::size_t a = joint_.graph.frames[e.from].session, b = joint_.graph.frames[e.to].session;
@@ -160,8 +115,8 @@ bool Merger::place_by_start(std::size_t s, MergeRecord& record) {
   constexpr std::size_t kEnough = 200;  // points; fewer say nothing
   const bool judged = verify(s, record) > kEnough;
   if (judged && record.agreement < settings_.least_agreement) {
-    record.why = fmt::format("the scans contradict the given start: {:.0f} % of what both saw agrees",
-                             100.0 * record.agreement);
+    record.why =
+        fmt::format("the scans contradict the given start: {:.0f} % of what both saw agrees", 100.0 * record.agreement);
     return false;
   }
   KeyframeGraph& g = joint_.graph;
@@ -203,6 +158,14 @@ bool Merger::try_session(std::size_t s, MergeRecord& record) {
       record.why = fmt::format("{:.0f} % of the walls in common space fall on walls", 100.0 * record.hit_ratio);
     else if (record.overlap_m2 < settings_.least_overlap_m2)
       record.why = fmt::format("the common walls are too few ({:.1f} m²)", record.overlap_m2);
+    else if (!starts_known_ && record.landmarks_m2 < settings_.least_landmarks_m2)
+      record.why =
+          fmt::format("too little pins the place down ({:.1f} m² of walls that end or turn)", record.landmarks_m2);
+    else if (!starts_known_ && record.missing > settings_.most_missing)
+      record.why = fmt::format(
+          "{:.0f} % of what would pin the place down stands on one side only: it may be another "
+          "place that looks alike",
+          100.0 * record.missing);
     else if (record.closures < settings_.least_supports)
       record.why = "too few places still agree after optimisation";
     else

@@ -19,6 +19,10 @@ struct MergeSettings {
   double least_agreement = 0.85;    ///< of what both sides could judge, seen alike
   double least_hit_ratio = 0.5;     ///< of the walls in the space that both saw, on walls of the other
   double least_overlap_m2 = 4.0;    ///< of walls that both saw
+  /// With unknown starts, see CommonGround. Of the logs at hand right merges miss at most 0.11, sides that look alike 0.16
+  /// and more; a place that was changed much between two visits (wean1, wean2: 0.38) is refused too.
+  double most_missing = 0.13;
+  double least_landmarks_m2 = 1.2;
 };
 
 /// Places the sessions one after the other onto session 0, which stays where it is. Sessions with a

@@ -73,6 +73,8 @@ struct MergeRecord {
   double agreement = 0.0;    ///< of the points that both sides could judge, the share that both saw alike
   double hit_ratio = 0.0;    ///< of the points in common space, the share on a wall of the other side
   double overlap_m2 = 0.0;   ///< of walls that both saw
+  double landmarks_m2 = 0.0; ///< of them, what pins the place down: lasting walls across the way along which it could slide
+  double missing = 0.0;      ///< lasting walls that the other side looked through, as a share of these and the landmarks
   std::string why;           ///< not accepted because, or what to know of it
 };
 

@@ -62,6 +62,7 @@ Json merge_json(const TeamSlamResult& slam) {
     list.push_back({{"robot", robot_name(m.log)}, {"transform", pose_json(m.T_map_start)}, {"score", m.agreement},
                     {"accepted", m.accepted}, {"why", m.why}, {"hit_ratio", m.hit_ratio},
                     {"conflict", m.agreement > 0.0 ? 1.0 - m.agreement : 0.0}, {"overlap_walls_m2", m.overlap_m2},
+                    {"landmarks_m2", m.landmarks_m2}, {"missing", m.missing},
                     {"places", m.places}, {"closures", m.closures}, {"rival", m.rival}});
   return list;
 }
