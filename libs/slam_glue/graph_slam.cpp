@@ -9,9 +9,13 @@ namespace outrider::slam_glue {
 namespace {
 
 constexpr double kStillM = 2e-3, kStillRad = 2e-3;  // wheels that moved less have not moved
-constexpr double kLost = 0.35;       // a smaller share of matching points says nothing about the pose
-constexpr double kDoubt = 0.9;       // of the usual share: below, the start of the match may have been wrong
-constexpr double kNearM = 0.15, kNearRad = 0.1;  // how far off a start may be for the match to recover
+constexpr double kLost = 0.35;                      // a smaller share of matching points says nothing about the pose,
+constexpr double kLostOfUsual = 0.6;                // or a smaller share of what is usual, where ranges are noisy
+constexpr double kBlindM = 0.1, kBlindRad = 0.12;   // least error of wheels where nothing matches
+constexpr double kNoWheelsBlindM = 0.5, kNoWheelsBlindRad = 0.6;  // without wheels
+constexpr int kAstray = 3;      // scans in a row that match nothing: without wheels a new beginning
+constexpr double kDoubt = 0.9;  // of the usual share: below, the start of the match may have been wrong
+constexpr double kNearM = 0.15, kNearRad = 0.1;           // how far off a start may be for the match to recover
 constexpr double kNoWheelsM = 0.15, kNoWheelsRad = 0.15;  // of the guess that the motion goes on [m, rad]
 
 double magnitude(const Pose2& T) { return std::hypot(T.x, T.y); }
@@ -51,6 +55,8 @@ void WheelNoise::learn(const Pose2& move, const Pose2& matched) {
   turn_ = std::clamp(turn_, kLeastTurn, kMostTurn);
 }
 
+double GraphSlam::lost_share() const { return std::min(kLost, kLostOfUsual * usual_share_); }
+
 PointMatch GraphSlam::locate(const std::vector<SurfacePoint>& points, const Pose2& guess,
                              const WheelNoise::Variance& doubt) {
   const PosePrior prior{guess, information_of(doubt)};
@@ -63,10 +69,24 @@ PointMatch GraphSlam::locate(const std::vector<SurfacePoint>& points, const Pose
   const SearchWindow window{guess, std::clamp(shift, 0.3, 1.0), std::clamp(turn, 0.2, 0.8), std::sqrt(doubt.shift),
                             std::sqrt(doubt.turn)};
   const auto hit = local_search_->best(thinned(within(points, {}, kReach), 0.1), window, 0.2);
-  if (!hit) return match;
-  const PointMatch other = match_points(*local_, points, hit->T_map_robot, noise_m_, prior);
-  constexpr double kClearly = 0.02;
-  return worth(other, guess, doubt) > worth(match, guess, doubt) + kClearly ? other : match;
+  PointMatch best = match;
+  if (hit) {
+    const PointMatch other = match_points(*local_, points, hit->T_map_robot, noise_m_, prior);
+    constexpr double kClearly = 0.02;
+    if (worth(other, guess, doubt) > worth(match, guess, doubt) + kClearly) best = other;
+  }
+  return has_wheels_ || best.share > lost_share() ? best : locate_anywhere(points, guess).value_or(best);
+}
+
+/// Without wheels a robot that turns quickly, or a gap in the log, leaves any guess behind.
+std::optional<PointMatch> GraphSlam::locate_anywhere(const std::vector<SurfacePoint>& points,
+                                                     const Pose2& guess) const {
+  constexpr double kShiftM = 1.0, kTurnRad = 1.6, kSure = 0.7;
+  const auto hit = local_search_->best(thinned(points, 0.1), {guess, kShiftM, kTurnRad}, 0.3);
+  if (!hit) return std::nullopt;
+  const PointMatch match = match_points(*local_, points, hit->T_map_robot, noise_m_);
+  if (match.share < kSure * usual_share_) return std::nullopt;
+  return match;
 }
 
 Pose2 GraphSlam::add(const LaserScan& scan, const Pose2& odometry) {
@@ -96,8 +116,8 @@ Pose2 GraphSlam::add(const LaserScan& scan, const Pose2& odometry) {
                                                  scans_.back().T_keyframe_robot};
   const Pose2 guess = before.T_keyframe_robot * move;
   const PointMatch match = locate(frame.points, guess, doubt);
-  const bool found = match.share > kLost;
-  const Pose2 T = found ? match.T_map_robot : guess;
+  const bool found = match.share > lost_share();
+  const Pose2 T = found ? match.T_map_robot : has_wheels_ ? guess : before.T_keyframe_robot;
   const Pose2 matched = inverse(before.T_keyframe_robot) * T;
   T_keyframe_wheels_ = T_keyframe_wheels_ * move;
   way_ = {way_.shift + doubt.shift, way_.turn + doubt.turn};
@@ -105,24 +125,35 @@ Pose2 GraphSlam::add(const LaserScan& scan, const Pose2& odometry) {
     usual_share_ += 0.05 * (match.share - usual_share_);
     noise_m_ += 0.02 * (std::clamp(match.rms_m, 0.015, 0.1) - noise_m_);
     velocity_ = matched;
+    misses_ = 0;
+  } else {
+    velocity_ = {};
+    ++misses_;
   }
   path_m_ += magnitude(matched);
   frame.path_m = path_m_;
   scans_.push_back({last, T});
   const bool far = magnitude(T) > settings_.keyframe_m || std::abs(T.theta) > settings_.keyframe_rad;
   const bool thinning = match.share < 0.7 * usual_share_ && magnitude(T) > 0.3 * settings_.keyframe_m;
-  if (far || thinning) {
+  const bool astray = !has_wheels_ && misses_ >= kAstray;
+  if (far || thinning || astray) {
+    if (!found) {
+      const double m = has_wheels_ ? kBlindM : kNoWheelsBlindM, rad = has_wheels_ ? kBlindRad : kNoWheelsBlindRad;
+      way_ = {std::max(way_.shift, m * m), std::max(way_.turn, rad * rad)};
+    }
     Eigen::Matrix3d information = information_of(way_);
     if (found) information += match.information;
     if (found && has_wheels_ && match.bound) wheels_.learn(T_keyframe_wheels_, match.T_scan_only);
-    add_keyframe(std::move(frame), T, information);
+    add_keyframe(std::move(frame), T, information, !found);
   }
   return graph_.poses[scans_.back().keyframe] * scans_.back().T_keyframe_robot;
 }
 
-void GraphSlam::add_keyframe(Keyframe frame, const Pose2& T_last_frame, const Eigen::Matrix3d& information) {
+void GraphSlam::add_keyframe(Keyframe frame, const Pose2& T_last_frame, const Eigen::Matrix3d& information,
+                             bool blind) {
   const std::size_t k = graph_.size();
-  graph_.edges.push_back({k - 1, k, T_last_frame, information, false});
+  graph_.edges.push_back({k - 1, k, T_last_frame, information, false, blind});
+  misses_ = 0;
   steps_.push_back(T_last_frame);
   graph_.poses.push_back(graph_.poses[k - 1] * T_last_frame);
   graph_.frames.push_back(std::move(frame));

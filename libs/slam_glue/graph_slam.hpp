@@ -33,7 +33,7 @@ class WheelNoise {
 struct GraphSettings {
   double max_range_m = 30.0;
   double keyframe_m = 0.5, keyframe_rad = 0.5;  ///< motion between two keyframes
-  std::size_t recent = 10;  ///< keyframes in the local map
+  std::size_t recent = 10;                      ///< keyframes in the local map
   LoopSettings loops;
 };
 
@@ -63,7 +63,9 @@ class GraphSlam {
     Pose2 T_keyframe_robot;
   };
   PointMatch locate(const std::vector<SurfacePoint>& points, const Pose2& guess, const WheelNoise::Variance& doubt);
-  void add_keyframe(Keyframe frame, const Pose2& T_last_frame, const Eigen::Matrix3d& information);
+  std::optional<PointMatch> locate_anywhere(const std::vector<SurfacePoint>& points, const Pose2& guess) const;
+  double lost_share() const;
+  void add_keyframe(Keyframe frame, const Pose2& T_last_frame, const Eigen::Matrix3d& information, bool blind);
   void rebuild_local_map();
 
   GraphSettings settings_;
@@ -75,14 +77,15 @@ class GraphSlam {
   Pose2 velocity_;                 ///< last motion, for logs without odometry
   bool has_wheels_ = false;
   double usual_share_ = 0.8;
-  double noise_m_ = 0.03;          ///< of a point's distance to its surface
+  int misses_ = 0;         ///< scans in a row that matched nothing
+  double noise_m_ = 0.03;  ///< of a point's distance to its surface
   double path_m_ = 0.0;
   std::vector<Pose2> steps_;       ///< T_k_k+1 as matched
   std::optional<PointMap> local_;  ///< recent points, in the frame of the last keyframe
   std::vector<SurfacePoint> local_points_;
   std::optional<CorrelativeMatcher> local_search_;  ///< of local_points_, made when first needed
-  Pose2 T_keyframe_wheels_;        ///< the wheels' way since the last keyframe
-  WheelNoise::Variance way_{0.0, 0.0};  ///< and its variance
+  Pose2 T_keyframe_wheels_;                         ///< the wheels' way since the last keyframe
+  WheelNoise::Variance way_{0.0, 0.0};              ///< and its variance
 };
 
 /// As the report states them.

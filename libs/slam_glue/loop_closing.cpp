@@ -12,15 +12,17 @@
 namespace outrider::slam_glue {
 namespace {
 
-constexpr std::size_t kVisit = 4;      // keyframes on either side that make up the earlier visit
-constexpr std::size_t kLooking = 3;    // keyframes before k that look with it
+constexpr std::size_t kVisit = 4;                        // keyframes on either side that make up the earlier visit
+constexpr std::size_t kLooking = 3;                      // keyframes before k that look with it
 constexpr double kSearchCell = 0.15, kMatchCell = 0.05;  // spacing of the points that search and match [m]
-constexpr double kSearchReach = 12.0;  // farther points are too sparse to search with [m]
-constexpr double kResolution = 0.1;    // of the search [m]
+constexpr double kSearchReach = 12.0;                    // farther points are too sparse to search with [m]
+constexpr double kResolution = 0.1;                      // of the search [m]
 constexpr int kLevels = 5;
-constexpr double kNoise = 0.03;        // of a point's distance to its surface [m]
-constexpr double kLeastScore = 0.4;    // of the search
-constexpr double kLoopCost = 0.3;      // a closure's own error, in metres of driving
+constexpr double kNoise = 0.03;         // of a point's distance to its surface [m]
+constexpr double kLeastScore = 0.4;     // of the search
+constexpr double kLoopCost = 0.3;       // a closure's own error, in metres of driving
+constexpr double kVagueM = 3.0;         // where it may lie farther off, a search is dear:
+constexpr std::size_t kVagueEvery = 2;  // only so many keyframes look
 constexpr std::size_t kMostCandidates = 2, kApartFrames = 8;
 
 double magnitude(const Pose2& T) { return std::hypot(T.x, T.y); }
@@ -33,31 +35,56 @@ std::vector<std::size_t> range(std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-/// Metres of driving whose drift lies between `k` and every other keyframe, along the best way through the graph.
-std::vector<double> LoopCloser::drift_from(const KeyframeGraph& graph, std::size_t k) const {
-  std::vector<std::vector<std::pair<std::size_t, double>>> links(graph.size());
+/// What lies between `k` and every other keyframe, along the best way through the graph.
+std::vector<Drift> LoopCloser::drift_from(const KeyframeGraph& graph, std::size_t k) const {
+  struct Link {
+    std::size_t to;
+    double cost;
+    const PoseEdge* edge;
+  };
+  std::vector<std::vector<Link>> links(graph.size());
   for (const PoseEdge& e : graph.edges) {
     const double cost = e.robust ? kLoopCost : magnitude(e.T_from_to) + 0.5 * std::abs(e.T_from_to.theta);
-    links[e.from].emplace_back(e.to, cost);
-    links[e.to].emplace_back(e.from, cost);
+    links[e.from].push_back({e.to, cost, &e});
+    links[e.to].push_back({e.from, cost, &e});
   }
-  std::vector<double> way(graph.size(), std::numeric_limits<double>::infinity());
+  std::vector<Drift> drift(graph.size(), {std::numeric_limits<double>::infinity(), Eigen::Matrix3d::Zero()});
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  way[k] = 0.0;
+  drift[k].way_m = 0.0;
   open.emplace(0.0, k);
   while (!open.empty()) {
     const auto [d, i] = open.top();
     open.pop();
-    if (d > way[i]) continue;
-    for (const auto& [j, cost] : links[i])
-      if (d + cost < way[j]) open.emplace(way[j] = d + cost, j);
+    if (d > drift[i].way_m) continue;
+    for (const Link& link : links[i]) {
+      if (d + link.cost >= drift[link.to].way_m) continue;
+      drift[link.to] = {d + link.cost, drift[i].blind};
+      Eigen::Matrix3d& P = drift[link.to].blind;
+      if (!P.isZero(0.0)) {  // a turn moves what lies farther on
+        Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+        J(0, 2) = graph.poses[i].y - graph.poses[link.to].y;
+        J(1, 2) = graph.poses[link.to].x - graph.poses[i].x;
+        P = J * P * J.transpose();
+      }
+      if (link.edge->blind) P.diagonal() += link.edge->information.diagonal().cwiseInverse();
+      open.emplace(d + link.cost, link.to);
+    }
   }
-  return way;
+  return drift;
+}
+
+double LoopCloser::radius(const Drift& drift) const {
+  return std::min(settings_.most_radius_m,
+                  settings_.drift_m * drift.way_m + 2.5 * std::sqrt(drift.blind(0, 0) + drift.blind(1, 1)));
+}
+
+double LoopCloser::turn(const Drift& drift) const {
+  return std::min(kPi, 0.06 + settings_.drift_rad * drift.way_m + 2.5 * std::sqrt(drift.blind(2, 2)));
 }
 
 std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std::size_t k,
-                                                const std::vector<double>& way, bool other_sessions) const {
+                                                const std::vector<Drift>& drift, bool other_sessions) const {
   const Keyframe& frame = graph.frames[k];
   const Point view = graph.poses[k] * frame.view;
   std::vector<std::pair<double, std::size_t>> near;
@@ -65,24 +92,25 @@ std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std:
     const Keyframe& other = graph.frames[j];
     if (other_sessions && other.session == frame.session) continue;
     if (other.session == frame.session && std::abs(frame.path_m - other.path_m) < settings_.recent_m) continue;
-    if (!std::isfinite(way[j])) continue;
-    const double radius = std::min(settings_.most_radius_m, settings_.drift_m * way[j]);
-    const double apart = distance(view, graph.poses[j] * other.view) - radius;
-    if (apart < settings_.view_m) near.emplace_back(std::max(0.0, apart) + 0.1 * radius, j);
+    if (!std::isfinite(drift[j].way_m)) continue;
+    const double reach = radius(drift[j]), apart = distance(view, graph.poses[j] * other.view);
+    if (reach > kVagueM && k % kVagueEvery != 0) continue;
+    if (apart - reach > settings_.view_m) continue;
+    // Where poses are vague all are near; the nearest are still the likeliest.
+    near.emplace_back(std::max(0.0, apart - reach) + 0.1 * reach + 0.01 * apart, j);
   }
   std::sort(near.begin(), near.end());
   std::vector<std::size_t> chosen;
   for (const auto& [apart, j] : near) {
-    const bool fresh = std::all_of(chosen.begin(), chosen.end(), [j = j](std::size_t c) {
-      return (c > j ? c - j : j - c) >= kApartFrames;
-    });
+    const bool fresh = std::all_of(chosen.begin(), chosen.end(),
+                                   [j = j](std::size_t c) { return (c > j ? c - j : j - c) >= kApartFrames; });
     if (fresh) chosen.push_back(j);
     if (chosen.size() == kMostCandidates) break;
   }
   return chosen;
 }
 
-std::optional<LoopClosure> LoopCloser::check(KeyframeGraph& graph, std::size_t j, std::size_t k, double way) {
+std::optional<LoopClosure> LoopCloser::check(KeyframeGraph& graph, std::size_t j, std::size_t k, const Drift& drift) {
   const auto [begin, end] = graph.neighbours(j, kVisit, kVisit);
   const auto [first, last] = graph.neighbours(k, kLooking, 0);
   const auto target = graph.gather(begin, end, j);
@@ -90,12 +118,12 @@ std::optional<LoopClosure> LoopCloser::check(KeyframeGraph& graph, std::size_t j
   const Pose2 expected = inverse(graph.poses[j]) * graph.poses[k];
   LoopClosure closure{j, k};
   Pose2 start = expected;
-  const double radius = std::min(settings_.most_radius_m, settings_.drift_m * way);
-  if (radius > settings_.least_radius_m) {
+  const double reach = radius(drift);
+  if (reach > settings_.least_radius_m) {
     const auto sparse = thinned(within(source, {}, kSearchReach), kSearchCell);
-    const auto there = within(target, expected.position(), kSearchReach + 1.5 * radius + 1.0);
+    const auto there = within(target, expected.position(), kSearchReach + 1.5 * reach + 1.0);
     const CorrelativeMatcher matcher(thinned(there, 0.5 * kResolution), kResolution, kLevels);
-    const SearchWindow window{expected, radius, std::min(kPi, 0.06 + settings_.drift_rad * way)};
+    const SearchWindow window{expected, reach, turn(drift)};
     const auto hit = matcher.best(sparse, window, kLeastScore);
     if (!hit) return std::nullopt;
     start = hit->T_map_robot;
@@ -150,10 +178,10 @@ void LoopCloser::adopt(const std::vector<LoopClosure>& closures) {
 }
 
 bool LoopCloser::look(KeyframeGraph& graph, std::size_t k, bool other_sessions) {
-  const std::vector<double> way = drift_from(graph, k);
+  const std::vector<Drift> drift = drift_from(graph, k);
   bool news = false;
-  for (const std::size_t j : candidates(graph, k, way, other_sessions)) {
-    const auto closure = check(graph, j, k, way[j]);
+  for (const std::size_t j : candidates(graph, k, drift, other_sessions)) {
+    const auto closure = check(graph, j, k, drift[j]);
     if (!closure) continue;
     if (closure->accepted()) {
       accept(graph, *closure);
@@ -167,8 +195,10 @@ bool LoopCloser::look(KeyframeGraph& graph, std::size_t k, bool other_sessions) 
           seen = true;
         }
       std::erase_if(pending_, [](const LoopClosure& c) { return c.share < 0.0; });
-      if (seen) accept(graph, *closure);
-      else pending_.push_back(*closure);
+      if (seen)
+        accept(graph, *closure);
+      else
+        pending_.push_back(*closure);
       news = news || seen;
     } else {
       refused_.push_back(*closure);
@@ -179,6 +209,13 @@ bool LoopCloser::look(KeyframeGraph& graph, std::size_t k, bool other_sessions) 
 
 void LoopCloser::optimise(KeyframeGraph& graph, const std::vector<std::size_t>& fixed) {
   constexpr double kWrongM = 0.3, kWrongRad = 0.06;
+  // Closures that correct a lot would hardly pull under their kernel: first a wide one brings them near.
+  constexpr double kFarM = 1.5, kFarRad = 0.2, kWide = 300.0;
+  const bool far = std::any_of(graph.edges.begin(), graph.edges.end(), [&](const PoseEdge& e) {
+    const Pose2 r = residual(e, graph.poses);
+    return e.robust && (magnitude(r) > kFarM || std::abs(r.theta) > kFarRad);
+  });
+  if (far) slam_glue::optimise(graph.poses, graph.edges, fixed, kWide);
   for (int round = 0; round < 4; ++round) {
     slam_glue::optimise(graph.poses, graph.edges, fixed);
     bool dropped = false;

@@ -9,7 +9,8 @@ namespace outrider::slam_glue {
 namespace {
 
 constexpr double kCell = 0.1;          // of the table [m]
-constexpr double kFinalReach = 0.12;   // pairs of the last iterations are nearer than this [m]
+constexpr double kFinalReach = 0.12;   // pairs of the last iterations are nearer than this [m],
+constexpr double kNoiseReach = 2.5, kMostFinalReach = 0.2;  // or so many standard deviations of the noise
 constexpr double kShrink = 0.7;        // of the pairs' reach, each iteration
 constexpr int kMostIterations = 20;
 constexpr double kConvergedM = 1e-4, kConvergedRad = 1e-5;
@@ -121,8 +122,9 @@ PointMatch match_points(const PointMap& map, std::span<const SurfacePoint> scan,
   Pose2& T = match.T_map_robot;
   if (map.empty()) return match;
   const double scale_all = kIndependent / (noise_m * noise_m);
+  const double final_reach = std::clamp(kNoiseReach * noise_m, kFinalReach, kMostFinalReach);
   double reach = PointMap::kReach;
-  for (int i = 0; i < kMostIterations; ++i, reach = std::max(kFinalReach, kShrink * reach)) {
+  for (int i = 0; i < kMostIterations; ++i, reach = std::max(final_reach, kShrink * reach)) {
     const Sums sums = accumulate(map, scan, T, reach);
     if (sums.pairs < 5) break;
     const double scale = scale_all / std::max(sums.weight, kIndependent);
@@ -137,10 +139,10 @@ PointMatch match_points(const PointMap& map, std::span<const SurfacePoint> scan,
     const Eigen::Vector3d step = H.ldlt().solve(-b);
     T = {T.x + step.x(), T.y + step.y(), wrap_angle(T.theta + step.z())};
     const bool still = std::hypot(step.x(), step.y()) < kConvergedM && std::abs(step.z()) < kConvergedRad;
-    if (still && reach <= kFinalReach) break;
+    if (still && reach <= final_reach) break;
   }
   match.T_scan_only = T;
-  fill_information(accumulate(map, scan, T, kFinalReach), scan.size(), noise_m, match);
+  fill_information(accumulate(map, scan, T, final_reach), scan.size(), noise_m, match);
   return match;
 }
 

@@ -53,13 +53,13 @@ double chi_squared(const PoseEdge& edge, std::span<const Pose2> nodes) {
   return e.dot(edge.information * e);
 }
 
-void optimise(std::span<Pose2> nodes, std::span<const PoseEdge> edges, std::span<const std::size_t> fixed) {
+void optimise(std::span<Pose2> nodes, std::span<const PoseEdge> edges, std::span<const std::size_t> fixed,
+              double kernel) {
   std::vector<std::array<double, 3>> x(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) x[i] = {nodes[i].x, nodes[i].y, nodes[i].theta};
   ceres::Problem problem;
   for (const PoseEdge& edge : edges) {
-    constexpr double kKernel = 3.0;  // standard deviations
-    ceres::LossFunction* loss = edge.robust ? new ceres::CauchyLoss(kKernel) : nullptr;
+    ceres::LossFunction* loss = edge.robust ? new ceres::CauchyLoss(kernel) : nullptr;
     problem.AddResidualBlock(new EdgeCost(edge), loss, x[edge.from].data(), x[edge.to].data());
   }
   for (const std::size_t i : fixed)

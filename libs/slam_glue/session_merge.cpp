@@ -55,7 +55,7 @@ std::vector<LoopClosure> Merger::closer_look(const Placement& placement) {
     joint_.move(g.frames[hit.frame].session, hit.T_map_robot * inverse(g.poses[hit.frame]));
     const auto near = frames_around(g, hit.frame, placed_);
     if (near.empty()) continue;
-    auto closure = closer_.check(g, near.front(), hit.frame, kNearWay);
+    auto closure = closer_.check(g, near.front(), hit.frame, {kNearWay});
     if (!closure || closure->agreement < settings_.least_place_agreement) continue;
     hits.push_back({hit.place, hit.frame, g.poses[near.front()] * closure->T_from_to, closure->share});
     found.push_back(std::move(*closure));

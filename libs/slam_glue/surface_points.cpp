@@ -9,7 +9,9 @@ namespace {
 
 constexpr int kNeighbours = 6;          // on either side, along the sweep
 constexpr double kSurfaceReach = 0.12;  // neighbours on the same surface are nearer than this plus a few beams [m]
-constexpr double kFlat = 0.15;          // a line's smaller standard deviation is below this share of its larger
+constexpr int kMostNeighbours = 20;     // and on the second try, over a longer stretch
+constexpr double kLongReach = 0.3;
+constexpr double kFlat = 0.15;  // a line's smaller standard deviation is below this share of its larger
 
 struct Echo {
   std::size_t beam;
@@ -17,10 +19,10 @@ struct Echo {
   Point p;
 };
 
-/// Direction of the line through the echoes around `i`, as a normal towards the sensor.
-Point normal_at(const std::vector<Echo>& echoes, std::size_t i, Point sensor, double beam_angle) {
+/// Direction of the line through the echoes within `reach` of `i`, at most `most` on either side, as a normal towards
+/// the sensor; zero where they do not lie on a line.
+Point normal_at(const std::vector<Echo>& echoes, std::size_t i, Point sensor, double reach, int most) {
   const Point p = echoes[i].p;
-  const double reach = kSurfaceReach + 3.0 * echoes[i].range * beam_angle;
   const auto n = static_cast<int>(echoes.size()), at = static_cast<int>(i);
   double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
   int count = 0;
@@ -33,8 +35,8 @@ Point normal_at(const std::vector<Echo>& echoes, std::size_t i, Point sensor, do
     return true;
   };
   take(at);
-  for (int j = at - 1; j >= std::max(0, at - kNeighbours) && take(j);) --j;
-  for (int j = at + 1; j <= std::min(n - 1, at + kNeighbours) && take(j);) ++j;
+  for (int j = at - 1; j >= std::max(0, at - most) && take(j);) --j;
+  for (int j = at + 1; j <= std::min(n - 1, at + most) && take(j);) ++j;
   if (count < 3) return {};
   const double cxx = sxx / count - sx * sx / count / count, cyy = syy / count - sy * sy / count / count;
   const double cxy = sxy / count - sx * sy / count / count;
@@ -58,7 +60,12 @@ std::vector<SurfacePoint> surface_points(const LaserScan& scan, double max_range
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (!points.empty() && distance(points.back().p, echoes[i].p) < spacing_m) continue;
-    points.push_back({echoes[i].p, normal_at(echoes, i, scan.T_robot_sensor.position(), std::abs(scan.angle_increment))});
+    const Point sensor = scan.T_robot_sensor.position();
+    const double spacing = 3.0 * echoes[i].range * std::abs(scan.angle_increment);
+    Point normal = normal_at(echoes, i, sensor, kSurfaceReach + spacing, kNeighbours);
+    // Noise bends short stretches: a longer one may still be straight.
+    if (normal == Point{}) normal = normal_at(echoes, i, sensor, kLongReach + spacing, kMostNeighbours);
+    points.push_back({echoes[i].p, normal});
   }
   return points;
 }
