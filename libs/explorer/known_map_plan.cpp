@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "decision/coverage_plan.hpp"
 #include "decision/passability.hpp"
 #include "explorer/known_map_views.hpp"
 #include "explorer/mission.hpp"
@@ -13,10 +14,12 @@
 namespace outrider::explorer {
 namespace {
 
-constexpr std::size_t kMostWayPoints = 900;    // of the lattice
-constexpr double kWayPointCost = 0.05;         // [s]
-constexpr int kNearOf = 24;                    // draws of which the nearest counts as near
-constexpr double kHot = 0.02, kCold = 0.0005;  // temperature at the ends, parts of the plan's time
+constexpr std::size_t kMostWayPoints = 900;       // of the lattice
+constexpr int kMostBlocks = 4096;                 // of the coarse plan
+constexpr int kCoarse = 5;                        // evaluations of it for one cell by cell
+constexpr double kWayPointCost = 0.05;            // [s]
+constexpr int kNearOf = 24;                       // draws of which the nearest counts as near
+constexpr double kHot = 0.0005, kCold = 0.00003;  // temperature at the ends, parts of the plan's time
 
 using Tours = std::vector<std::vector<Cell>>;
 
@@ -41,14 +44,22 @@ class Planner {
     choose_lattice();
   }
 
-  /// The search begins with the best of greed and these tours.
-  KnownMapPlan plan(std::vector<Tours> starts) {
-    Tours tours = greedy();
+  /// The best of these tours, or what the search makes of what a coarse plan makes of it.
+  KnownMapPlan plan(const std::vector<Tours>& starts) {
+    Tours best(robots_.size());
+    double best_cost = cost_of(best);
+    bool reaches = seen_count_ >= aim_;
+    const auto consider = [&](const Tours& tours, double cost) {
+      const bool own = seen_count_ >= aim_;
+      if (own < reaches || (own == reaches && cost >= best_cost)) return;
+      reaches = own;
+      best_cost = cost;
+      best = tours;
+    };
+    for (const Tours& start : starts) consider(start, cost_of(start));
+    Tours tours = options_.evaluations > 0 ? coarse(best) : best;
     double cost = cost_of(tours);
-    for (Tours& start : starts)
-      if (const double own = cost_of(start); own < cost && seen_count_ >= aim_) cost = own, tours = std::move(start);
-    double best_cost = cost;
-    Tours best = tours;
+    consider(tours, cost);
     for (int k = 0; k < options_.evaluations; ++k) {
       const double heat = kHot * std::pow(kCold / kHot, static_cast<double>(k) / options_.evaluations) * best_cost;
       Tours changed = tours;
@@ -57,10 +68,10 @@ class Planner {
       if (changed_cost > cost && std::exp((cost - changed_cost) / heat) < uniform()) continue;
       tours = std::move(changed);
       cost = changed_cost;
-      if (cost < best_cost && seen_count_ >= aim_) best_cost = cost, best = tours;
+      consider(tours, cost);
     }
     const double time_s = evaluate(best);
-    return {seen_count_ >= aim_ ? std::optional(time_s) : std::nullopt, std::move(best)};
+    return {reaches ? std::optional(time_s) : std::nullopt, std::move(best)};
   }
 
  private:
@@ -156,62 +167,25 @@ class Planner {
     return missing * truth_.geometry().cell_area() / rate;
   }
 
-  /// Whoever is free first goes where it newly sees most per time on the way.
-  Tours greedy() {
-    Tours tours(robots_.size());
-    ++stamp_;
-    seen_count_ = 0;
-    std::vector<Cell> at;
-    std::vector<double> free_s(robots_.size(), 0.0);
-    for (const Robot& robot : robots_) {
-      at.push_back(robot.start);
-      see(robot.views->view(robot.start));
+  /// Plans on blocks first, from the best of `starts`: cheaper by far than cell by cell, and nearly as true.
+  Tours coarse(const Tours& start) {
+    int block = 1;
+    while ((truth_.width() / block + 1) * (truth_.height() / block + 1) > kMostBlocks) ++block;
+    decision::CoverageGround ground(truth_, masks_.rbegin()->second, counts_, block);
+    std::vector<decision::CoverageRobot> robots;
+    decision::CoverageTours tours(robots_.size());
+    for (std::size_t r = 0; r < robots_.size(); ++r) {
+      robots.push_back({ground.node_of(robots_[r].start), team_[r].speed, team_[r].range});
+      for (const Cell c : start[r])
+        if (const auto node = ground.node_of(c); ground.drivable(node) && (tours[r].empty() || tours[r].back() != node))
+          tours[r].push_back(node);
     }
-    while (seen_count_ < aim_) {
-      const auto r = static_cast<std::size_t>(std::min_element(free_s.begin(), free_s.end()) - free_s.begin());
-      if (free_s[r] == std::numeric_limits<double>::infinity()) break;
-      const Robot& robot = robots_[r];
-      double best = 0.0;
-      Cell to;
-      for (const Cell candidate : lattice_) {
-        const double metres = robot.views->metres(at[r], candidate);
-        if (candidate == at[r] || !std::isfinite(metres)) continue;
-        const double rate = unseen_on(robot.views->leg(at[r], candidate)) / metres;
-        if (rate > best) best = rate, to = candidate;
-      }
-      if (best == 0.0) {  // the lattice shows nothing new: a way-point in what is left
-        if (const auto cell = nearest_unseen(robot, at[r]))
-          lattice_.push_back(*cell);
-        else
-          free_s[r] = std::numeric_limits<double>::infinity();
-        continue;
-      }
-      for (const ViewStep& step : robot.views->leg(at[r], to)) see(*step.seen);
-      free_s[r] += robot.views->metres(at[r], to) / robot.speed;
-      tours[r].push_back(to);
-      at[r] = to;
-    }
-    return tours;
-  }
-
-  std::optional<Cell> nearest_unseen(const Robot& robot, Cell from) {
-    std::optional<Cell> nearest;
-    double metres = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      const Cell cell = truth_.geometry().cell_at(i);
-      if (!counts_[i] || seen_[i] == stamp_) continue;
-      if (const double way = robot.views->metres(cell, from); way < metres) metres = way, nearest = cell;
-    }
-    return nearest;
-  }
-
-  double unseen_on(const Leg& leg) {
-    fresh_.clear();
-    for (const ViewStep& step : leg)
-      for (const std::uint32_t i : *step.seen)
-        if (counts_[i] && seen_[i] != stamp_) fresh_.push_back(i), seen_[i] = stamp_;
-    for (const std::uint32_t i : fresh_) seen_[i] = stamp_ - 1;
-    return static_cast<double>(fresh_.size());
+    decision::CoveragePlanner planner(ground, std::move(robots), {});
+    tours = planner.improve(std::move(tours), kCoarse * options_.evaluations, random_);
+    Tours plan(robots_.size());
+    for (std::size_t r = 0; r < robots_.size(); ++r)
+      for (const auto node : tours[r]) plan[r].push_back(ground.cell_of(node));
+    return plan;
   }
 
   /// A way-point that is rather near to `c` than far from it.
@@ -277,16 +251,16 @@ class Planner {
   std::vector<Robot> robots_;
   std::vector<Cell> lattice_;
   std::vector<Player> players_;
-  std::vector<std::uint32_t> fresh_;
 };
 
 /// The tours that a coordinator without knowledge drives: a way-point every few cells.
 Tours tours_of(const std::string& coordinator, const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
                double fraction) {
   constexpr double kApart = 3.0;  // [cells]
+  constexpr double kMore = 0.02;  // what goes straight between way-points sees a little less than the run
   MissionSettings settings;
   settings.coordinator = coordinator;
-  settings.until = fraction;
+  settings.until = std::min(1.0, fraction + kMore);
   settings.record_events = false;
   const MissionResult result = run_mission(truth, team, settings);
   Tours tours;
@@ -312,7 +286,7 @@ KnownMapPlan plan_with_known_map(const OccupancyGrid& truth, const std::vector<R
   for (const CoordinatorInfo& known : coordinators())
     if (std::find(options.begin_with.begin(), options.begin_with.end(), known.name) != options.begin_with.end())
       starts.push_back(tours_of(known.name, truth, team, options.fraction));
-  return Planner(truth, team, options).plan(std::move(starts));
+  return Planner(truth, team, options).plan(starts);
 }
 
 }  // namespace outrider::explorer

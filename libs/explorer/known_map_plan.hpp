@@ -23,12 +23,12 @@ struct KnownMapPlan {
   std::vector<std::vector<Cell>> tours;  ///< way-points of each robot, from its start on
 };
 
-/// A plan for the least time to see `fraction` of the reachable area of `truth`, by local search: tours over a lattice
-/// of way-points, begun greedily by newly seen area per time or with the tours of a real run, then changed at random (a
-/// way-point moved, replaced, put in, left out; a stretch reversed; tails of two robots exchanged) under simulated
-/// annealing. Robots sense in every cell that they enter, by the simulator's rule, and drive shortest safe paths at
-/// their speed; they do not get in each other's way. No better than the optimum and no worse than its beginnings: a
-/// reference, not a bound. Deterministic.
+/// A plan for the least time to see `fraction` of the reachable area of `truth`, by local search: from the tours of the
+/// best of some real runs, first over blocks of cells (decision::CoveragePlanner), then over a lattice of way-points with
+/// what is seen from every cell on the way. Changes are random (a way-point moved, replaced, put in, left out; a stretch
+/// reversed; tails of two robots exchanged) under simulated annealing. Robots sense in every cell that they enter, by the
+/// simulator's rule, and drive shortest safe paths at their speed; they do not get in each other's way. No better than
+/// the optimum and no worse than its beginnings: a reference, not a bound. Deterministic.
 KnownMapPlan plan_with_known_map(const OccupancyGrid& truth, const std::vector<RobotSpec>& team,
                                  const KnownMapPlanOptions& options);
 
