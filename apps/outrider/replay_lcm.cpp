@@ -83,16 +83,17 @@ report::RunRecord record_of(Recording& r, bool& equal) {
   for (RobotId id = 0; id < r.team.introduction().team; ++id) {
     const auto known = r.team.robots().find(id);
     if (known == r.team.robots().end()) {  // events name robots by their place in the team
-      record.robots.push_back({.spec = {.name = fmt::format("robot{}", id + 1)}, .seen = Grid<std::uint8_t>(record.map.geometry())});
+      record.robots.push_back({.spec = {.name = fmt::format("robot{}", id + 1)}, .seen = BitGrid(record.map.geometry())});
       continue;
     }
     const explorer::OverheardRobot& heard = known->second;
-    report::RobotRecord robot{heard.spec, heard.trajectory, {}, Grid<std::uint8_t>(record.map.geometry()), 0.0};
+    report::RobotRecord robot{heard.spec, heard.trajectory, {}, BitGrid(record.map.geometry()), 0.0};
     if (robot.spec.name.empty()) robot.spec.name = fmt::format("robot{}", id + 1);
     const bool same = heard.status && heard.status->map_hash == r.team.map().hash();
     equal = equal && same;
     robot.map = same ? record.map : heard.said->states();
-    for (std::size_t i = 0; i < robot.seen.size(); ++i) robot.seen[i] = heard.said->states()[i] != CellState::kUnknown;
+    for (std::size_t i = 0; i < robot.seen.size(); ++i)
+      if (heard.said->states()[i] != CellState::kUnknown) robot.seen.insert(i);
     robots[robot.spec.name] = {{"map_as_in_the_run", same}, {"done", heard.status && heard.status->done}};
     record.robots.push_back(std::move(robot));
   }

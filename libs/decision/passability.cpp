@@ -10,7 +10,7 @@
 namespace outrider::decision {
 namespace {
 
-constexpr double kMaxRadiusCells = 128.0;  // keeps the count of forbidding cells within 16 bits
+constexpr double kMaxRadiusCells = 64.0;  // keeps the count of forbidding cells within 14 bits
 
 /// Row `y` of a mask cleared over [begin, end), clipped to the grid.
 void clear_row(Grid<std::uint8_t>& mask, int y, int begin, int end) {
@@ -58,23 +58,22 @@ std::vector<int> forbidden_half_widths(double radius_m, double resolution) {
 Passability::Passability(const GridGeometry& geometry, double radius_m)
     : radius_(radius_m),
       half_widths_(forbidden_half_widths(radius_m, geometry.resolution)),
-      known_(geometry, CellState::kUnknown),
-      obstacles_(geometry),
+      cells_(geometry),
       mask_(geometry) {
-  for_border(geometry, half_widths_, [&](Cell c) { obstacles_[c] = 1; });
+  static_assert(static_cast<int>(CellState::kUnknown) == 0);
+  for_border(geometry, half_widths_, [&](Cell c) { cells_[c] = 1; });
 }
 
 std::span<const std::uint32_t> Passability::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed) {
   assert(map.geometry() == mask_.geometry());
   changed_.clear();
   for (const std::uint32_t index : changed) {
-    const CellState before = known_[index], now = map[index];
+    const CellState before = known(index), now = map[index];
     if (before == now) continue;
-    known_[index] = now;
-    const Cell c = mask_.geometry().cell_at(index);
-    if (before == CellState::kOccupied) remove_obstacle(c);
-    if (now == CellState::kOccupied) add_obstacle(c);
-    set(index, now == CellState::kFree && obstacles_[index] == 0);
+    cells_[index] = static_cast<std::uint16_t>(obstacles(index) | static_cast<unsigned>(now) << kStateShift);
+    if (before == CellState::kOccupied) remove_obstacle(mask_.geometry().cell_at(index));
+    if (now == CellState::kOccupied) add_obstacle(mask_.geometry().cell_at(index));
+    set(index, now == CellState::kFree && obstacles(index) == 0);
   }
   return changed_;
 }
@@ -101,7 +100,7 @@ void Passability::for_rows_around(Cell c, RowOperation&& operation) {
 void Passability::add_obstacle(Cell c) {
   for_rows_around(c, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      ++obstacles_[i];
+      ++cells_[i];
       set(i, false);
     }
   });
@@ -110,8 +109,8 @@ void Passability::add_obstacle(Cell c) {
 void Passability::remove_obstacle(Cell c) {
   for_rows_around(c, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      --obstacles_[i];
-      set(i, obstacles_[i] == 0 && known_[i] == CellState::kFree);
+      --cells_[i];
+      set(i, obstacles(i) == 0 && known(i) == CellState::kFree);
     }
   });
 }

@@ -17,10 +17,10 @@ std::vector<int> forbidden_half_widths(double radius_m, double resolution);
 
 /// Where the centre of a disc robot may be: cells known free whose distance from the cell centre to every occupied
 /// cell's square, and to the edge of the map, is at least the radius. Unknown cells are not passable themselves but do
-/// not inflate.
+/// not inflate. Three bytes a cell.
 class Passability {
  public:
-  /// Everything is unknown. Throws InputError when the radius [m] is negative, not finite or above 128 cells.
+  /// Everything is unknown. Throws InputError when the radius [m] is negative, not finite or above 64 cells.
   Passability(const GridGeometry& geometry, double radius_m);
 
   /// Follows `map` after the cells `changed` (indices, duplicates allowed) changed. O(changed x mask size). Returns the
@@ -38,10 +38,13 @@ class Passability {
   void for_rows_around(Cell c, RowOperation&& operation);
   void set(std::size_t index, bool passable);
 
+  static constexpr unsigned kStateShift = 14;
+  CellState known(std::size_t index) const { return static_cast<CellState>(cells_[index] >> kStateShift); }
+  unsigned obstacles(std::size_t index) const { return cells_[index] & ((1U << kStateShift) - 1U); }
+
   double radius_;
   std::vector<int> half_widths_;
-  Grid<CellState> known_;          // the map as of the last update
-  Grid<std::uint16_t> obstacles_;  // how many occupied cells forbid a cell
+  Grid<std::uint16_t> cells_;      // how many occupied cells forbid a cell, and above that its state at the last update
   Grid<std::uint8_t> mask_;
   std::vector<std::uint32_t> changed_;  // what the last update changed in the mask
 };

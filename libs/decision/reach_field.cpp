@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "decision/dial.hpp"
+#include "world/cell_finder.hpp"
 
 namespace outrider::decision {
 namespace {
@@ -32,9 +33,11 @@ ReachField::ReachField(const GridGeometry& geometry)
       borrowed_(0) {}
 
 void ReachField::update(const Grid<std::uint8_t>& mask, std::span<const std::uint32_t> changed) {
+  CellFinder cell_at(geometry_);
   for (const std::uint32_t index : changed) {
-    std::uint32_t& level = levels_[padded_index(geometry_.cell_at(index))];
-    const bool is_borrowed = padded_index(geometry_.cell_at(index)) == borrowed_;
+    const std::size_t at = padded_index(cell_at(index));
+    std::uint32_t& level = levels_[at];
+    const bool is_borrowed = at == borrowed_;
     if (level != kBlocked && !is_borrowed) --open_;
     if (is_borrowed) borrowed_ = 0;
     level = mask[index] != 0 ? kNever : kBlocked;

@@ -10,16 +10,6 @@ namespace {
 constexpr double kTouch = 1e-6;          // [m] touching is allowed
 constexpr double kSearchRadius = 30.0;   // [m] nobody makes room farther away than this
 
-/// Calls visit(cell) for the cells whose centre is closer than `r` to the segment a-b.
-template <class Visit>
-void near_segment(const GridGeometry& g, Point a, Point b, double r, Visit&& visit) {
-  const Cell lo = g.cell_of({std::min(a.x, b.x) - r, std::min(a.y, b.y) - r});
-  const Cell hi = g.cell_of({std::max(a.x, b.x) + r, std::max(a.y, b.y) + r});
-  for (int y = std::max(lo.y, 0); y <= std::min(hi.y, g.height - 1); ++y)
-    for (int x = std::max(lo.x, 0); x <= std::min(hi.x, g.width - 1); ++x)
-      if (distance_to_segment(g.center({x, y}), a, b) < r - kTouch) visit(Cell{x, y});
-}
-
 }  // namespace
 
 double distance_to_segment(Point p, Point a, Point b) {
@@ -30,38 +20,69 @@ double distance_to_segment(Point p, Point a, Point b) {
 
 Traffic::Traffic(const GridGeometry& geometry, double radius) : geometry_(geometry), radius_(radius) {}
 
+/// Everything happens in a window of the map, the square of half edge `reach` [m] around a cell.
+void Traffic::look_at(const Grid<std::uint8_t>& passable, Cell around, double reach) {
+  const GridGeometry& g = geometry_;
+  const int most = std::max(g.width, g.height);
+  const int cells = static_cast<int>(std::min(std::ceil(reach / g.resolution) + 1.0, static_cast<double>(most)));
+  low_ = {std::max(around.x - cells, 0), std::max(around.y - cells, 0)};
+  const Cell high{std::min(around.x + cells, g.width - 1), std::min(around.y + cells, g.height - 1)};
+  const GridGeometry window{g.resolution, {g.origin.x + low_.x * g.resolution, g.origin.y + low_.y * g.resolution},
+                            high.x - low_.x + 1, high.y - low_.y + 1};
+  if (mask_.geometry() != window) mask_ = Grid<std::uint8_t>(window);
+  for (int y = 0; y < window.height; ++y)
+    std::copy_n(&passable[Cell{low_.x, low_.y + y}], window.width, &mask_[Cell{0, y}]);
+}
+
+/// Calls visit(cell of the window) for the cells whose centre is closer than `r` to the segment a-b.
+template <class Visit>
+void Traffic::near_segment(Point a, Point b, double r, Visit&& visit) const {
+  const GridGeometry& g = geometry_;
+  const Cell lo = g.cell_of({std::min(a.x, b.x) - r, std::min(a.y, b.y) - r});
+  const Cell hi = g.cell_of({std::max(a.x, b.x) + r, std::max(a.y, b.y) + r});
+  for (int y = std::max(lo.y, low_.y); y <= std::min(hi.y, low_.y + mask_.height() - 1); ++y)
+    for (int x = std::max(lo.x, low_.x); x <= std::min(hi.x, low_.x + mask_.width() - 1); ++x)
+      if (distance_to_segment(g.center({x, y}), a, b) < r - kTouch) visit(in_window({x, y}));
+}
+
+std::vector<Cell> Traffic::on_map(std::vector<Cell> path) const {
+  for (Cell& c : path) c = {c.x + low_.x, c.y + low_.y};
+  return path;
+}
+
 void Traffic::block(std::span<const Neighbour> neighbours, std::optional<RobotId> except) {
   for (const Neighbour& n : neighbours)
     if (n.robot != except)
-      near_segment(geometry_, n.position, n.position, radius_ + n.radius, [&](Cell c) { mask_[c] = 0; });
+      near_segment(n.position, n.position, radius_ + n.radius, [&](Cell c) { mask_[c] = 0; });
 }
 
-std::optional<std::vector<Cell>> Traffic::detour(const Grid<std::uint8_t>& passable, Cell from, Cell to,
+std::optional<std::vector<Cell>> Traffic::detour(const Grid<std::uint8_t>& passable, Cell from, Cell to, double longest,
                                                  std::span<const Neighbour> neighbours) {
-  mask_ = passable;
+  look_at(passable, to, longest);
+  const Cell begin = in_window(from), end = in_window(to);
+  if (!mask_.contains(begin)) return std::nullopt;
   block(neighbours, std::nullopt);
-  mask_[from] = 1;
-  if (!mask_[to]) return std::nullopt;
-  const Cell source[] = {to};
-  field_.compute(mask_, source);
-  if (!field_.reached(from)) return std::nullopt;
-  return field_.path(from);
+  mask_[begin] = 1;
+  if (!mask_[end]) return std::nullopt;
+  const Cell source[] = {end};
+  field_.compute(mask_, source, longest);
+  if (!field_.reached(begin)) return std::nullopt;
+  return on_map(field_.path(begin));
 }
 
+/// `from` and the path in cells of the window.
 std::vector<Cell> Traffic::nearest_clear(Cell from) {
   mask_[from] = 1;
   const Cell source[] = {from};
   field_.compute(mask_, source, kSearchRadius);
   std::optional<Cell> best;
   double nearest = std::numeric_limits<double>::infinity();
-  const int reach = static_cast<int>(kSearchRadius / geometry_.resolution) + 1;
-  for (int y = std::max(0, from.y - reach); y <= std::min(geometry_.height - 1, from.y + reach); ++y)
-    for (int x = std::max(0, from.x - reach); x <= std::min(geometry_.width - 1, from.x + reach); ++x) {
-      const Cell c{x, y};
-      if (!mask_[c] || on_way_[c] || !field_.reached(c) || field_.metres(c) >= nearest) continue;
-      nearest = field_.metres(c);
-      best = c;
-    }
+  for (std::size_t i = 0; i < mask_.size(); ++i) {
+    const Cell c = mask_.geometry().cell_at(i);
+    if (!mask_[i] || on_way_[i] || !field_.reached(c) || field_.metres(c) >= nearest) continue;
+    nearest = field_.metres(c);
+    best = c;
+  }
   if (!best) return {};
   std::vector<Cell> path = field_.path(*best);
   std::reverse(path.begin(), path.end());
@@ -70,27 +91,28 @@ std::vector<Cell> Traffic::nearest_clear(Cell from) {
 
 std::optional<Traffic::Room> Traffic::make_room(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
                                                 std::span<const Neighbour> neighbours) {
-  on_way_ = Grid<std::uint8_t>(geometry_);
+  look_at(passable, from, kSearchRadius);
+  const Cell begin = in_window(from);
+  on_way_ = Grid<std::uint8_t>(mask_.geometry());
   Point a = asker.position;
   const double need = radius_ + asker.radius;
-  near_segment(geometry_, a, a, need, [&](Cell c) { on_way_[c] = 1; });
+  near_segment(a, a, need, [&](Cell c) { on_way_[c] = 1; });
   for (const Cell next : asker.way) {
     const Point b = geometry_.center(next);
-    near_segment(geometry_, a, b, need, [&](Cell c) { on_way_[c] = 1; });
+    near_segment(a, b, need, [&](Cell c) { on_way_[c] = 1; });
     a = b;
   }
-  mask_ = passable;
   block(neighbours, std::nullopt);
-  if (auto path = nearest_clear(from); !path.empty()) return Room{std::move(path), std::nullopt, false};
-  mask_ = passable;
+  if (auto path = on_map(nearest_clear(begin)); !path.empty()) return Room{std::move(path), std::nullopt, false};
+  look_at(passable, from, kSearchRadius);
   const Neighbour only_asker[] = {asker};
   block(only_asker, std::nullopt);
-  if (auto path = nearest_clear(from); !path.empty()) {
+  if (auto path = on_map(nearest_clear(begin)); !path.empty()) {
     const Neighbour* first = in_the_way(path, neighbours, kSearchRadius);
     return Room{std::move(path), first ? std::optional(first->robot) : std::nullopt, false};
   }
-  mask_ = passable;
-  if (auto path = nearest_clear(from); !path.empty()) return Room{std::move(path), asker.robot, true};
+  look_at(passable, from, kSearchRadius);
+  if (auto path = on_map(nearest_clear(begin)); !path.empty()) return Room{std::move(path), asker.robot, true};
   return std::nullopt;
 }
 

@@ -27,8 +27,9 @@ class Traffic {
  public:
   Traffic(const GridGeometry& geometry, double radius);
 
-  /// Shortest path (cells, `from` first) from `from` to `to` that touches no neighbour where it stands now.
-  std::optional<std::vector<Cell>> detour(const Grid<std::uint8_t>& passable, Cell from, Cell to,
+  /// Shortest path (cells, `from` first) from `from` to `to` that touches no neighbour where it stands now; none when all
+  /// are longer than `longest` [m]. O(cells within `longest`).
+  std::optional<std::vector<Cell>> detour(const Grid<std::uint8_t>& passable, Cell from, Cell to, double longest,
                                           std::span<const Neighbour> neighbours);
 
   struct Room {
@@ -37,7 +38,8 @@ class Traffic {
     bool through_asker = false;     ///< only reachable past the asker itself: the asker has to give way
   };
   /// The nearest place where `asker` can pass on its way without touching this robot. Tries, in this order: around
-  /// everybody; through others (who are asked in turn); past the asker itself. Nothing when no such place exists.
+  /// everybody; through others (who are asked in turn); past the asker itself. Nothing when no such place exists within
+  /// 30 m.
   std::optional<Room> make_room(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
                                 std::span<const Neighbour> neighbours);
 
@@ -45,11 +47,17 @@ class Traffic {
   const Neighbour* in_the_way(std::span<const Cell> way, std::span<const Neighbour> neighbours, double horizon) const;
 
  private:
+  void look_at(const Grid<std::uint8_t>& passable, Cell around, double reach);
   void block(std::span<const Neighbour> neighbours, std::optional<RobotId> except);
+  template <class Visit>
+  void near_segment(Point a, Point b, double r, Visit&& visit) const;
+  Cell in_window(Cell c) const { return {c.x - low_.x, c.y - low_.y}; }
+  std::vector<Cell> on_map(std::vector<Cell> path) const;
   std::vector<Cell> nearest_clear(Cell from);
 
   GridGeometry geometry_;
   double radius_;
+  Cell low_;                    // lower left cell of the part of the map that the rest is about
   Grid<std::uint8_t> mask_;     // passable without the neighbours
   Grid<std::uint8_t> on_way_;   // 1 = a robot here would be touched by the passing one
   DistanceField field_;

@@ -73,13 +73,28 @@ class AuctionCoordinator : public Coordinator {
       if (s.needs_task) decision.verdict = Decision::Verdict::kNothing;
       return;
     }
-    open_ = OpenRound{id, s.now_s, s.now_s + kCallAgain, {}, {}, {}};
-    for (const Teammate& mate : s.team) open_->expected.push_back(mate.robot);
+    open_ = OpenRound{id, s.now_s, s.now_s + kCallAgain, nearest(s), s.team.size() > kMostAsked, {}, {}};
     open_->sheets.push_back(std::move(own));
     decision.send.emplace_back(open_->call());
   }
 
+  /// The team-mates in hearing, of a large team the nearest, ascending.
+  static std::vector<RobotId> nearest(const Situation& s) {
+    std::vector<std::pair<double, RobotId>> mates;
+    for (const Teammate& mate : s.team)
+      mates.emplace_back(distance(mate.status.pose.position(), s.pose.position()), mate.robot);
+    if (mates.size() > kMostAsked) {
+      std::partial_sort(mates.begin(), mates.begin() + kMostAsked, mates.end());
+      mates.resize(kMostAsked);
+    }
+    std::vector<RobotId> robots;
+    for (const auto& [apart, robot] : mates) robots.push_back(robot);
+    std::sort(robots.begin(), robots.end());
+    return robots;
+  }
+
   void answer(const Situation& s, const RoundOpen& open, Decision& decision) {
+    if (!open.asked.empty() && !holds(open.asked, s.self)) return;
     if (open_ && open_->id.opener < open.round.opener) return;  // ours stands; its opener will answer us
     if (const auto closed = closed_.find(open.round.opener); closed != closed_.end() && closed->second == open.round.count) return;
     if (!answered_ || answered_->round != open.round) {

@@ -51,8 +51,13 @@ class NearestCoordinator : public Coordinator {
   bool reserve_;
 };
 
-/// What a robot can lose to team-mates: each takes at most one task.
-std::size_t rivals(const Situation& s) { return s.known.size(); }
+/// What a robot can lose to team-mates: each takes at most one task. Of a large team only the nearest bid against it, and
+/// what others near have is not for sale: some more, for most of the time.
+std::size_t rivals(const Situation& s) { return s.known.size() <= kMostAsked ? s.known.size() : kMostAsked + 3; }
+
+/// How many team-mates may crowd a task, at the worst. A bound for a large team would leave no task out: there a robot bids
+/// for what is best before anybody crowds it.
+double crowd(const Situation& s) { return s.known.size() <= kMostAsked ? static_cast<double>(s.known.size()) : 0.0; }
 
 /// Dai's rules: the influence of team-mates (eq. 2) takes at most max(gamma, 1) each from U.
 TaskGrain dai_grain(auction::BidRule rule, const auction::BidParameters& k, const Situation& s) {
@@ -61,7 +66,7 @@ TaskGrain dai_grain(auction::BidRule rule, const auction::BidParameters& k, cons
   };
   const bool whole = k.gain == auction::Gain::kFootprint;
   if (k.way == auction::Way::kStraight) return {.whole_footprint = whole};  // no search outwards meets these in order
-  const double least_u_p2 = -static_cast<double>(rivals(s)) * std::max(k.gamma, 1.0);
+  const double least_u_p2 = -crowd(s) * std::max(k.gamma, 1.0);
   return {.whole_footprint = whole,
           .least_bid = [=](const BidEntry& e) { return bid(e, least_u_p2); },
           .most_bid = [=](const BidEntry& e) { return bid(e, 0.0); },
@@ -71,7 +76,7 @@ TaskGrain dai_grain(auction::BidRule rule, const auction::BidParameters& k, cons
 /// Burgard's: every awarded task takes at most 1 from the utility, which is 1 at most.
 TaskGrain burgard_grain(double beta, const Situation& s) {
   const auto bid = [beta, range = s.spec.range](const BidEntry& e, double u) { return u - beta * e.distance / range; };
-  const double least_u = 1.0 - static_cast<double>(rivals(s));
+  const double least_u = 1.0 - crowd(s);
   return {.gains = false,
           .least_bid = [=](const BidEntry& e) { return bid(e, least_u); },
           .most_bid = [=](const BidEntry& e) { return bid(e, 1.0); },

@@ -21,6 +21,7 @@ constexpr double kNoWait = 10.0;         // [s] after that in which nobody is wa
 constexpr double kGoAgain = 0.2;         // [m] farther away than close, who was waited for counts as gone
 constexpr double kLookAhead = 0.5;       // [m] on the way to where a robot is heading
 constexpr double kWorthDetour = 4.0;     // [m] a detour may always cost this much
+constexpr double kRejoin = 20.0;         // [m] a detour comes back to the way after no more than this of it
 constexpr double kNearby = 10.0;         // [m] team-mates farther away do not matter
 constexpr double kTouching = 0.05;       // [m] between bodies
 constexpr double kStraightOn = 5.0;      // [m]
@@ -46,8 +47,9 @@ std::vector<decision::Neighbour> Explorer::neighbours(double now_s) const {
   for (const Sighting& sighting : sightings_) {
     if (distance(sighting.position, pose_.position()) > kNearby) continue;
     decision::Neighbour n{sighting.robot, sighting.position, sighting.radius, {}, sighting.robot, {}};
-    const auto mate = std::find_if(team_.begin(), team_.end(), [&](const Teammate& t) { return t.robot == n.robot; });
-    if (mate != team_.end() && now_s <= mate->heard_s + settings_.silent_after) {
+    const auto mate = std::lower_bound(team_.begin(), team_.end(), n.robot,
+                                       [](const Teammate& t, RobotId robot) { return t.robot < robot; });
+    if (mate != team_.end() && mate->robot == n.robot && now_s <= mate->heard_s + settings_.silent_after) {
       n.way = mate->status.way;
       n.priority = mate->status.priority;
       n.asks = mate->status.asks;
@@ -229,10 +231,14 @@ void Explorer::resolve_block(double now_s) {
   const auto around = neighbours(now_s);
   const double resolution = map_.states().geometry().resolution;
   const bool stuck = now_s > blocked_since_s_ + kStuck;  // a detour did not help
-  if (const auto way = stuck ? std::nullopt : traffic_.detour(passable_.mask(), base(), way_.back(), around);
-      way && length(*way, resolution) <= 2.0 * length(way_, resolution) + kWorthDetour) {
+  const std::size_t rejoin = std::min(way_.size(), static_cast<std::size_t>(kRejoin / resolution) + 1);
+  const auto rest = way_.begin() + static_cast<std::ptrdiff_t>(rejoin);
+  const double longest = 2.0 * length({way_.begin(), rest}, resolution) + kWorthDetour;
+  if (auto way = stuck ? std::nullopt : traffic_.detour(passable_.mask(), base(), way_[rejoin - 1], longest, around);
+      way && length(*way, resolution) <= longest) {
+    way->insert(way->end(), rest, way_.end());
     if (!making_room_for_) asks_.reset();
-    drive(*way);
+    drive(std::move(*way));
     return;
   }
   const auto* first = traffic_.in_the_way(way_, around, kNearby);

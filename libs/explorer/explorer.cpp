@@ -29,7 +29,7 @@ Explorer::Explorer(RobotId self, RobotSpec spec, const GridGeometry& geometry, c
       seen_(geometry),
       passable_(geometry, spec_.radius),
       traffic_(geometry, spec_.radius),
-      board_(spec_, geometry),
+      board_(spec_, map_.states()),
       pose_(spec_.start),
       priority_(kIdlePriority + self) {}
 
@@ -41,8 +41,8 @@ void Explorer::sense(double now_s) {
   note_trail();
   sightings_ = sensing.sightings;
   for (const Sighting& seen : sightings_)  // whoever is in view is known to be there, heard or not
-    for (Teammate& mate : team_)
-      if (mate.robot == seen.robot) mate.status.pose = {seen.position.x, seen.position.y, mate.status.pose.theta};
+    if (const auto mate = find_mate(seen.robot); mate != team_.end())
+      mate->status.pose = {seen.position.x, seen.position.y, mate->status.pose.theta};
   take_in(sensing);
   note_news(now_s);
   share();
@@ -53,7 +53,7 @@ void Explorer::note_news(double now_s) {
   const std::vector<std::uint32_t> news = map_.take_changed();
   if (news.empty()) return;
   const auto mask_news = passable_.update(map_.states(), news);
-  board_.note_changes(map_.states(), news, passable_, mask_news);
+  board_.note_changes(news, passable_, mask_news);
   changed_.insert(changed_.end(), news.begin(), news.end());
   map_news_s_ = now_s;
 }
@@ -62,7 +62,7 @@ void Explorer::take_in(const Sensing& sensing) {
   observed_.clear();
   const auto see = [&](std::uint32_t index, CellState state) {
     if (!seen_[index]) {
-      seen_[index] = 1;
+      seen_.insert(index);
       observed_.push_back(index);
       if (map_.states()[index] == CellState::kUnknown) new_area_ += map_.states().geometry().cell_area();
     }
@@ -120,9 +120,11 @@ void Explorer::hear(const link::Delivery& delivery, double now_s) {
   if (const auto* update = std::get_if<MapUpdate>(&message)) {
     for (const CellRun& run : update->runs) map_.merge(run);
   } else if (const auto* status = std::get_if<StatusMessage>(&message)) {
-    auto mate = std::lower_bound(team_.begin(), team_.end(), status->robot,
-                                 [](const Teammate& t, RobotId robot) { return t.robot < robot; });
-    if (mate == team_.end() || mate->robot != status->robot) mate = team_.insert(mate, Teammate{status->robot, {}, 0.0});
+    auto mate = find_mate(status->robot);
+    if (mate == team_.end()) {
+      const auto after = std::find_if(team_.begin(), team_.end(), [&](const Teammate& t) { return t.robot > status->robot; });
+      mate = team_.insert(after, Teammate{status->robot, {}, 0.0});
+    }
     mate->status = *status;  // in place: its way keeps its memory
     mate->heard_s = now_s;
   } else if (is_auction_traffic(message)) {
@@ -157,7 +159,7 @@ void Explorer::check_task(double now_s) {
     return end_task("no way", now_s);
   if (!changed_.empty() && now_s >= look_at_s_) {
     look_at_s_ = now_s + kLookAgain;
-    if (!board_.is_worth_it(map_.states(), task_->stand)) return end_task("too little left", now_s);
+    if (!board_.is_worth_it(task_->stand)) return end_task("too little left", now_s);
   }
   if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
     stop();
@@ -185,27 +187,42 @@ void Explorer::end_task(const char* how, double now_s) {
   status_news_ = true;
 }
 
-void Explorer::run_coordinator(double now_s) {
+/// Whoever was ever heard of; team_.end() otherwise.
+std::vector<Teammate>::iterator Explorer::find_mate(RobotId robot) {
+  const auto mate = std::lower_bound(team_.begin(), team_.end(), robot,
+                                     [](const Teammate& t, RobotId number) { return t.robot < number; });
+  return mate != team_.end() && mate->robot == robot ? mate : team_.end();
+}
+
+/// The team-mates in hearing: usually all that were ever heard, and nothing has to be copied.
+std::span<const Teammate> Explorer::heard_of_late(double now_s) {
+  const auto silent = [&](const Teammate& mate) { return now_s > mate.heard_s + settings_.silent_after; };
+  if (std::none_of(team_.begin(), team_.end(), silent)) return team_;
   std::size_t heard = 0;  // copied over last time's, whose memory is used again
   for (const Teammate& mate : team_) {
-    if (now_s > mate.heard_s + settings_.silent_after) continue;
+    if (silent(mate)) continue;
     if (heard < heard_.size()) heard_[heard] = mate;
     else heard_.push_back(mate);
     ++heard;
   }
   heard_.resize(heard);
+  return heard_;
+}
+
+void Explorer::run_coordinator(double now_s) {
+  const std::span<const Teammate> in_hearing = heard_of_late(now_s);
   if (now_s > period_begin_s_ && (!inbox_.empty() || !task_)) {  // an auction period ends: eq. 6 to 9
     rate_.add(new_area_, now_s - period_begin_s_);
     new_area_ = 0.0;
     period_begin_s_ = now_s;
   }
   const std::function<std::vector<BidEntry>(const TaskGrain&)> tasks = [this](const TaskGrain& grain) {
-    return board_.entries(map_.states(), passable_, base(), grain);
+    return board_.entries(passable_, base(), grain);
   };
   const bool waits = board_.any_deferred(now_s);
   const bool needs_task = !task_ && phase_ == Phase::kExploring &&
                           (map_news_s_ > refused_s_ || now_s >= refused_s_ + kAskAgain);
-  const Situation situation{now_s, self_, spec_, pose_, map_.states(), passable_, here(), heard_, team_,
+  const Situation situation{now_s, self_, spec_, pose_, map_.states(), passable_, here(), in_hearing, team_,
                             task_, needs_task, rate_.value(), inbox_, tasks};
   Decision decision = coordinator_->decide(situation);
   inbox_.clear();

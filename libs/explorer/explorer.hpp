@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "explorer/map_exchange.hpp"
 #include "link/bus.hpp"
 #include "link/radio.hpp"
+#include "world/bit_grid.hpp"
 #include "world/body.hpp"
 #include "world/team_map.hpp"
 
@@ -106,6 +108,8 @@ class Explorer {
   void share();
   void send_status(double now_s);
   void hear(const link::Delivery& delivery, double now_s);
+  std::vector<Teammate>::iterator find_mate(RobotId robot);
+  std::span<const Teammate> heard_of_late(double now_s);
   void run_coordinator(double now_s);
   void apply(const Decision& decision, double now_s);
   void check_task(double now_s);
@@ -147,7 +151,7 @@ class Explorer {
 
   TeamMap map_;
   MapExchange exchange_;
-  Grid<std::uint8_t> seen_;            // 1 where the own sensor saw the cell
+  BitGrid seen_;                       // where the own sensor saw the cell
   decision::Passability passable_;
   decision::Traffic traffic_;
   decision::LocalCoordination local_;
@@ -160,7 +164,7 @@ class Explorer {
   bool arrived_ = true, blocked_ = false;
   std::vector<Sighting> sightings_;
   std::vector<Teammate> team_;         // sorted by robot, everybody ever heard
-  std::vector<Teammate> heard_;        // those heard recently, refreshed each decision
+  std::vector<Teammate> heard_;        // those heard recently, when these are not all
   std::vector<link::Delivery> inbox_;
   std::uint32_t seq_ = 0;
 

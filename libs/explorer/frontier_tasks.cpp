@@ -4,12 +4,26 @@
 #include <cmath>
 #include <tuple>
 
+#include "world/cell_finder.hpp"
+
 namespace outrider::explorer {
 namespace {
 
 constexpr int kTile = 16;  // about the edge of a tile [cells]
 
 bool row_major(Cell a, Cell b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); }
+
+/// Cells from `low` to `high`, both included.
+struct Box {
+  Cell low{0, 0}, high{-1, -1};
+  bool holds(Cell c) const { return low.x <= c.x && c.x <= high.x && low.y <= c.y && c.y <= high.y; }
+};
+
+/// The block of `edge` cells that `c` is in, without `margin` cells on all sides.
+Box block_around(Cell c, int edge, int margin) {
+  const Cell low{c.x / edge * edge, c.y / edge * edge};
+  return {{low.x + margin, low.y + margin}, {low.x + edge - 1 - margin, low.y + edge - 1 - margin}};
+}
 
 /// A grid of blocks of `edge` cells that covers a grid.
 GridGeometry blocks_of(const GridGeometry& g, int edge) {
@@ -19,36 +33,45 @@ GridGeometry blocks_of(const GridGeometry& g, int edge) {
 
 }  // namespace
 
-FrontierTasks::FrontierTasks(const RobotSpec& spec, const GridGeometry& geometry)
-    : geometry_(geometry),
-      least_(static_cast<std::size_t>(std::max(1.0, std::ceil(spec.radius / geometry.resolution - 1e-9)))),
-      frontiers_(geometry),
-      footprint_(spec.range, geometry),
+FrontierTasks::FrontierTasks(const RobotSpec& spec, const OccupancyGrid& map)
+    : map_(map),
+      geometry_(map.geometry()),
+      least_(static_cast<std::size_t>(std::max(1.0, std::ceil(spec.radius / geometry_.resolution - 1e-9)))),
+      footprint_(spec.range, geometry_),
       most_gain_(kPi * spec.range * spec.range * (1.0 + 1e-6)),
       least_gain_(0.25 * kPi * spec.radius * spec.radius),
-      revision_edge_(static_cast<int>(std::min(spec.range / geometry.resolution, 1e6)) + 1),
-      revisions_(blocks_of(geometry, revision_edge_)) {
-  if (least_gain_ < 0.5 * geometry.cell_area()) least_gain_ = 0.0;
+      revision_edge_(static_cast<int>(std::min(spec.range / geometry_.resolution, 1e6)) + 1),
+      revisions_(blocks_of(geometry_, revision_edge_)) {
+  if (least_gain_ < 0.5 * geometry_.cell_area()) least_gain_ = 0.0;
 }
 
-void FrontierTasks::update(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
-                           std::span<const std::uint32_t> mask_changed) {
+void FrontierTasks::update(std::span<const std::uint32_t> changed, std::span<const std::uint32_t> mask_changed) {
   ++revision_;
+  CellFinder cell_at(geometry_);
+  Box block, inside;  // what has been marked lately
   for (const std::uint32_t i : changed) {
-    const Cell c = geometry_.cell_at(i);
-    revisions_[Cell{c.x / revision_edge_, c.y / revision_edge_}] = revision_;
+    const Cell c = cell_at(i);
+    if (!block.holds(c)) {
+      revisions_[Cell{c.x / revision_edge_, c.y / revision_edge_}] = revision_;
+      block = block_around(c, revision_edge_, 0);
+    }
+    if (block_ == 0 || inside.holds(c)) continue;
+    for (int y = std::max(c.y - 1, 0) / edge_; y <= std::min(c.y + 1, geometry_.height - 1) / edge_; ++y)
+      for (int x = std::max(c.x - 1, 0) / edge_; x <= std::min(c.x + 1, geometry_.width - 1) / edge_; ++x)
+        tiles_[Cell{x, y}].dirty = true;
+    inside = block_around(c, edge_, 1);
   }
-  const auto flipped = frontiers_.update(map, changed);
-  if (block_ == 0) return;
-  for (const std::uint32_t i : flipped) tile_of(i).dirty = true;
-  if (block_ > 1)  // a block's task may move to a cell that can be stood on
-    for (const std::uint32_t i : mask_changed) tile_of(i).dirty = true;
+  if (block_ <= 1) return;
+  Box tile;
+  for (const std::uint32_t i : mask_changed) {  // a block's task may move to a cell that can be stood on
+    const Cell c = cell_at(i);
+    if (tile.holds(c)) continue;
+    tile_of(c).dirty = true;
+    tile = block_around(c, edge_, 0);
+  }
 }
 
-FrontierTasks::Tile& FrontierTasks::tile_of(std::size_t index) {
-  const Cell c = geometry_.cell_at(index);
-  return tiles_[Cell{c.x / edge_, c.y / edge_}];
-}
+FrontierTasks::Tile& FrontierTasks::tile_of(Cell c) { return tiles_[Cell{c.x / edge_, c.y / edge_}]; }
 
 void FrontierTasks::set_spacing(double spacing) {
   const int block = std::max(1, static_cast<int>(spacing / geometry_.resolution));
@@ -56,8 +79,6 @@ void FrontierTasks::set_spacing(double spacing) {
   block_ = block;
   edge_ = block * std::max(1, kTile / block);
   tiles_ = Grid<Tile>(blocks_of(geometry_, edge_));
-  for (std::size_t i = 0; i < geometry_.size(); ++i)
-    if (frontiers_.is_frontier(i)) tile_of(i).dirty = true;
 }
 
 std::pair<Cell, Cell> FrontierTasks::tiles_around(Cell at, double reach) const {
@@ -95,7 +116,7 @@ void FrontierTasks::cut(Tile& tile, Cell at, const decision::Passability& passab
 /// Visits the frontier cells of [low, high) that were neither given up nor deferred, row by row.
 template <class Visit>
 void FrontierTasks::for_open(Cell low, Cell high, Visit&& visit) const {
-  frontiers_.for_frontier(low, high, [&](Cell c) {
+  decision::for_frontier(map_, low, high, [&](Cell c) {
     const std::size_t index = geometry_.index(c);
     if ((given_up_.empty() || !given_up_.contains(index)) && (deferred_.empty() || !deferred_.contains(index))) visit(c);
   });
@@ -119,7 +140,7 @@ void FrontierTasks::cut_block(Cell low, Cell high, const decision::Passability& 
   }
 }
 
-double FrontierTasks::gain(const OccupancyGrid& map, FrontierTask& task, Cell stand, bool whole) const {
+double FrontierTasks::gain(FrontierTask& task, Cell stand, bool whole) const {
   const Cell block{stand.x / revision_edge_, stand.y / revision_edge_};
   std::uint64_t newest = 0;
   for (int y = std::max(block.y - 1, 0); y <= std::min(block.y + 1, revisions_.height() - 1); ++y)
@@ -128,8 +149,20 @@ double FrontierTasks::gain(const OccupancyGrid& map, FrontierTask& task, Cell st
   if (task.stand == stand && task.revision >= newest) return task.gain;
   task.stand = stand;
   task.revision = revision_;
-  task.unseen = footprint_.unseen_area(map, stand);
-  return task.gain = whole ? footprint_.area(map, stand) : task.unseen;
+  task.unseen = footprint_.unseen_area(map_, stand);
+  return task.gain = whole ? footprint_.area(map_, stand) : task.unseen;
+}
+
+/// At least `least_` frontier cells hang together (8 neighbours) with frontier cell `c`. O(least_^2).
+bool FrontierTasks::has_company(Cell c) const {
+  std::vector<Cell> found{c};
+  for (std::size_t k = 0; k < found.size() && found.size() < least_; ++k)
+    decision::for_frontier(map_, {std::max(found[k].x - 1, 0), std::max(found[k].y - 1, 0)},
+                           {std::min(found[k].x + 2, geometry_.width), std::min(found[k].y + 2, geometry_.height)},
+                           [&](Cell n) {
+                             if (std::find(found.begin(), found.end(), n) == found.end()) found.push_back(n);
+                           });
+  return found.size() >= least_;
 }
 
 bool FrontierTasks::frontier_near(Cell c, double spacing) const {
@@ -149,7 +182,7 @@ void FrontierTasks::for_block(Cell task, double spacing, Visit&& visit) {
     for (int x = task.x - reach; x <= task.x + reach; ++x) {
       if (!is_frontier({x, y})) continue;
       visit(Cell{x, y}, geometry_.index({x, y}));
-      if (block_ != 0) tile_of(geometry_.index({x, y})).dirty = true;
+      if (block_ != 0) tile_of({x, y}).dirty = true;
     }
 }
 
@@ -167,8 +200,8 @@ bool FrontierTasks::any_deferred(double now_s) {
   bool waits = false;
   std::erase_if(deferred_, [&](const auto& entry) {
     const auto [index, until_s] = entry;
-    if (until_s > now_s && frontiers_.is_frontier(index)) return waits = true, false;
-    if (block_ != 0) tile_of(index).dirty = true;
+    if (until_s > now_s && is_frontier(geometry_.cell_at(index))) return waits = true, false;
+    if (block_ != 0) tile_of(geometry_.cell_at(index)).dirty = true;
     return true;
   });
   return waits;

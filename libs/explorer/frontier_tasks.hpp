@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "decision/footprint.hpp"
-#include "decision/frontier_map.hpp"
+#include "decision/frontiers.hpp"
 #include "decision/passability.hpp"
 #include "world/robot.hpp"
 
@@ -29,28 +29,34 @@ struct FrontierTask {
 /// when somebody looks at it after a change.
 class FrontierTasks {
  public:
-  FrontierTasks(const RobotSpec& spec, const GridGeometry& geometry);
+  /// `map` is the robot's own and outlives this.
+  FrontierTasks(const RobotSpec& spec, const OccupancyGrid& map);
 
-  /// The map changed there, and so did the mask of passable cells. O(changed).
-  void update(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
-              std::span<const std::uint32_t> mask_changed);
-  /// Edge of the blocks [m]. Another one than before costs a pass over the map.
+  /// The map changed there, and so did the mask of passable cells. O(changed), and little: tiles are only marked.
+  void update(std::span<const std::uint32_t> changed, std::span<const std::uint32_t> mask_changed);
+  /// Edge of the blocks [m]. With another one than before all tiles are cut anew.
   void set_spacing(double spacing);
-  /// Calls visit(FrontierTask&) for all tasks whose tile touches the square of half edge `reach` [m] around `at`.
+  /// Calls visit(FrontierTask&) for all tasks whose tile touches the square of half edge `reach` [m] around `at`, but not
+  /// that of half edge `beyond`; a negative one touches nothing.
   template <class Visit>
-  void for_near(const decision::Passability& passable, Cell at, double reach, Visit&& visit) {
+  void for_near(const decision::Passability& passable, Cell at, double beyond, double reach, Visit&& visit) {
     const auto [low, high] = tiles_around(at, reach);
+    const auto [first, last] = beyond < 0.0 ? std::pair(Cell{0, 0}, Cell{-1, -1}) : tiles_around(at, beyond);
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x) {
+        if (x == first.x && first.y <= y && y <= last.y) {
+          x = last.x;
+          continue;
+        }
         Tile& tile = tiles_[Cell{x, y}];
         if (tile.dirty) cut(tile, {x, y}, passable);
         for (FrontierTask& task : tile.tasks)
-          if (!task.lone || frontiers_.has_company(task.cell, least_)) visit(task);
+          if (!task.lone || has_company(task.cell)) visit(task);
       }
   }
   /// The unseen area in view of `stand` [m^2], or with `whole` all of it; remembered with the task until the map around
   /// changes.
-  double gain(const OccupancyGrid& map, FrontierTask& task, Cell stand, bool whole) const;
+  double gain(FrontierTask& task, Cell stand, bool whole) const;
   /// What gain() can be at most, without looking: knowledge grows, so what was unseen once is a bound (cells that turn
   /// from occupied to free are too rare to matter) [m^2].
   double most_gain(const FrontierTask& task, Cell stand) const { return task.stand == stand ? task.gain : most_gain(); }
@@ -62,9 +68,8 @@ class FrontierTasks {
   bool is_left_over(const FrontierTask& task, Cell stand) const {
     return task.stand == stand && task.unseen < least_gain_;
   }
-  double unseen(const OccupancyGrid& map, Cell stand) const { return footprint_.unseen_area(map, stand); }
+  double unseen(Cell stand) const { return footprint_.unseen_area(map_, stand); }
 
-  bool is_frontier(Cell c) const { return frontiers_.is_frontier(c); }
   /// Some frontier is left within a block's reach of `c`.
   bool frontier_near(Cell c, double spacing) const;
   /// Takes the frontier around `task` off the list for good. `tried`: the robot stood right there. Cells that a robot can
@@ -79,12 +84,14 @@ class FrontierTasks {
 
  private:
   struct Tile {
-    bool dirty = false;
+    bool dirty = true;
     std::vector<FrontierTask> tasks;  // by row, then column
   };
 
+  bool is_frontier(Cell c) const { return decision::is_frontier(map_, c); }
+  bool has_company(Cell c) const;
   std::pair<Cell, Cell> tiles_around(Cell at, double reach) const;
-  Tile& tile_of(std::size_t index);
+  Tile& tile_of(Cell c);
   void cut(Tile& tile, Cell at, const decision::Passability& passable);
   void cut_block(Cell low, Cell high, const decision::Passability& passable, std::vector<FrontierTask>& tasks) const;
   template <class Visit>
@@ -93,9 +100,9 @@ class FrontierTasks {
   void for_open(Cell low, Cell high, Visit&& visit) const;
   int block_reach(double spacing) const { return static_cast<int>(spacing / 2.0 / geometry_.resolution); }
 
+  const OccupancyGrid& map_;
   GridGeometry geometry_;
   std::size_t least_;       // cells of a piece of frontier that is worth a task
-  decision::FrontierMap frontiers_;
   int block_ = 0;           // edge [cells]
   int edge_ = 0;            // of a tile [cells]
   Grid<Tile> tiles_;        // in units of tiles

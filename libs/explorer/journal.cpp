@@ -168,7 +168,7 @@ MissionResult gather(const OccupancyGrid& truth, const std::vector<RobotSpec>& t
     referee.tick(t);
     result.mission_time_s = t;
   }
-  std::vector<OccupancyGrid> maps;
+  std::vector<const OccupancyGrid*> maps;
   result.maps_equal = true;
   const LiveFarewell* first = nullptr;
   for (std::size_t r = 0; r < team.size(); ++r) {
@@ -178,7 +178,7 @@ MissionResult gather(const OccupancyGrid& truth, const std::vector<RobotSpec>& t
     MissionRobot& robot = result.robots.back();
     robot.map = farewell->map;
     robot.path_m = farewell->path_m;
-    maps.push_back(farewell->map);
+    maps.push_back(&farewell->map);
     if (first == nullptr) first = &*farewell;
     result.maps_equal = result.maps_equal && farewell->map_hash == first->map_hash && farewell->map == first->map;
     result.time_s = std::max(result.time_s, farewell->done_s);

@@ -112,8 +112,9 @@ class Mission {
       bool any = false, any_cut = false;
       for (std::size_t b = 0; b < n; ++b) {
         if (a == b) continue;
-        const bool close = distance(simulator_.pose(static_cast<RobotId>(a)).position(),
-                                    simulator_.pose(static_cast<RobotId>(b)).position()) < kClose;
+        const Point at = simulator_.pose(static_cast<RobotId>(a)).position(),
+                    other = simulator_.pose(static_cast<RobotId>(b)).position();
+        const bool close = std::abs(at.x - other.x) < kClose && distance(at, other) < kClose;
         const bool cut = close && cut_off(static_cast<RobotId>(a), static_cast<RobotId>(b));
         const bool begins = close && !close_[a * n + b] && a < b;
         result_.interactions += begins;
@@ -208,11 +209,10 @@ class Mission {
     result_.time_s = result_.status == MissionStatus::kTimeout ? now_s_ : explored_at_s_;
     result_.mission_time_s = now_s_;
     result_.radio = ether_.counters();
-    std::vector<OccupancyGrid> maps;
+    std::vector<const OccupancyGrid*> maps;
     for (std::size_t r = 0; r < robots_.size(); ++r) {
-      maps.push_back(robots_[r]->map());
+      maps.push_back(&robots_[r]->map());
       result_.robots.push_back(referee_.robot(static_cast<RobotId>(r)));
-      result_.robots.back().map = robots_[r]->map();
       if (!localized_.empty()) result_.robots.back().localization = errors_[r].summary();
       result_.robots.back().path_m = simulator_.path_m(static_cast<RobotId>(r));
     }
@@ -222,10 +222,14 @@ class Mission {
     for_living([&](Explorer&, RobotId id) {
       const auto r = static_cast<std::size_t>(id);
       if (!first) first = r;
-      result_.maps_equal = result_.maps_equal && maps[*first] == maps[r];
+      result_.maps_equal = result_.maps_equal && *maps[*first] == *maps[r];
     });
     result_.left = robots_[first.value_or(0)]->left(result_.map);
-    for (auto& robot : robots_) merge_reasons(robot->left(result_.map));
+    for (std::size_t r = 0; r < robots_.size(); ++r) {
+      merge_reasons(robots_[r]->left(result_.map));
+      result_.robots[r].map = robots_[r]->map();
+      robots_[r].reset();  // one by one, to need less memory
+    }
     return std::move(result_);
   }
 

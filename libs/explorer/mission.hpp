@@ -15,6 +15,7 @@
 #include "link/radio.hpp"
 #include "sim/simulator.hpp"
 #include "sim/world.hpp"
+#include "world/bit_grid.hpp"
 
 namespace outrider::explorer {
 
@@ -54,7 +55,7 @@ struct MissionRobot {
   RobotSpec spec;
   std::vector<TimedPose> trajectory;
   OccupancyGrid map;
-  Grid<std::uint8_t> seen;
+  BitGrid seen;
   double first_seen_m2 = 0.0;
   double path_m = 0.0;
   std::optional<LocalizationError> localization;  ///< absent: it knew

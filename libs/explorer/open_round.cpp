@@ -5,7 +5,7 @@
 namespace outrider::explorer {
 
 RoundOpen OpenRound::call() const {
-  RoundOpen open{id, {}};
+  RoundOpen open{id, {}, some ? expected : std::vector<RobotId>{}};
   for (const BidSheet& sheet : sheets)
     if (open.heard.size() < RoundOpen::kMostHeard) open.heard.push_back(sheet.robot);
   return open;

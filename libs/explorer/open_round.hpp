@@ -15,6 +15,7 @@ struct OpenRound {
   double since_s = 0.0;
   double repeat_s = 0.0;           ///< when to call for the missing sheets again
   std::vector<RobotId> expected;   ///< ascending
+  bool some = false;               ///< only they are asked, not everybody
   std::vector<BidSheet> sheets;    ///< whole ones, the seller's own first
   std::map<RobotId, std::vector<BidSheet>> parts;
 

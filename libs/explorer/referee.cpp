@@ -40,15 +40,22 @@ Grid<std::uint8_t> reachable_area(const OccupancyGrid& truth, const std::vector<
   Grid<std::uint8_t> reachable(truth.geometry());
   const auto& g = truth.geometry();
   const int reach = static_cast<int>(slimmest / g.resolution);
+  std::vector<Cell> disc;
+  for (int y = -reach; y <= reach; ++y)
+    for (int x = -reach; x <= reach; ++x)
+      if (std::hypot(x, y) * g.resolution <= slimmest) disc.push_back({x, y});
+  const auto reached = [&](int x, int y) { return field.reached({x, y}); };
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const Cell c = g.cell_at(i);
     if (!field.reached(c)) continue;
-    for (int y = -reach; y <= reach; ++y)
-      for (int x = -reach; x <= reach; ++x) {
-        const Cell n{c.x + x, c.y + y};
-        if (std::hypot(x, y) * g.resolution <= slimmest && g.contains(n) && truth[n] == CellState::kFree)
-          reachable[n] = 1;
-      }
+    reachable[i] = truth[i] == CellState::kFree;
+    // On the way to a cell beyond, the body's centre leaves the reached cells at one that has another beside it: those
+    // sweep all that others sweep.
+    if (reached(c.x - 1, c.y) && reached(c.x + 1, c.y) && reached(c.x, c.y - 1) && reached(c.x, c.y + 1)) continue;
+    for (const Cell offset : disc) {
+      const Cell n{c.x + offset.x, c.y + offset.y};
+      if (g.contains(n) && truth[n] == CellState::kFree) reachable[n] = 1;
+    }
   }
   return reachable;
 }
@@ -59,7 +66,7 @@ Referee::Referee(const OccupancyGrid& truth, const std::vector<RobotSpec>& team)
   for (const RobotSpec& spec : team) {
     MissionRobot robot;
     robot.spec = spec;
-    robot.seen = Grid<std::uint8_t>(truth.geometry());
+    robot.seen = BitGrid(truth.geometry());
     robots_.push_back(std::move(robot));
   }
   for (const double fraction : {0.5, 0.9, 0.95, 0.99}) time_to_.emplace_back(fraction, std::nullopt);
@@ -69,7 +76,7 @@ void Referee::saw(RobotId robot, const std::vector<std::uint32_t>& cells, double
   MissionRobot& r = robots_[static_cast<std::size_t>(robot)];
   const auto step = static_cast<std::uint16_t>(std::min<double>(kNever - 1, now_s / playback_step_s_));
   for (const std::uint32_t i : cells) {
-    r.seen[i] = 1;
+    r.seen.insert(i);
     if (known_since_[i] != kNever) continue;
     known_since_[i] = step;
     if (truth_[i] == CellState::kFree) r.first_seen_m2 += truth_.geometry().cell_area();
@@ -134,7 +141,7 @@ double Referee::expected_s() const {
   return area / sweep + truth_.geometry().resolution * (truth_.width() + truth_.height()) / speed;
 }
 
-void Referee::conclude(const std::vector<OccupancyGrid>& maps, MissionResult& result) {
+void Referee::conclude(std::span<const OccupancyGrid* const> maps, MissionResult& result) {
   result.explored_fraction = explored_fraction();
   result.reachable_m2 = static_cast<double>(reachable_cells_) * truth_.geometry().cell_area();
   result.time_to = time_to_;
@@ -142,8 +149,8 @@ void Referee::conclude(const std::vector<OccupancyGrid>& maps, MissionResult& re
   result.playback_step_s = playback_step_s_;
   result.timeline = std::move(timeline_);
   result.map = OccupancyGrid(truth_.geometry());
-  for (const OccupancyGrid& map : maps)  // robots that never met may know different parts: the team knows them all
-    for (std::size_t i = 0; i < map.size(); ++i) result.map[i] = std::max(result.map[i], map[i]);
+  for (const OccupancyGrid* map : maps)  // robots that never met may know different parts: the team knows them all
+    for (std::size_t i = 0; i < map->size(); ++i) result.map[i] = std::max(result.map[i], (*map)[i]);
 }
 
 }  // namespace outrider::explorer

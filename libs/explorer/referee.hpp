@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "explorer/mission.hpp"
@@ -26,7 +27,7 @@ class Referee {
   double expected_s() const;
   const MissionRobot& robot(RobotId robot) const { return robots_[static_cast<std::size_t>(robot)]; }
   /// Fills the team's parts of the result; `maps` are the robots' own at the end.
-  void conclude(const std::vector<OccupancyGrid>& maps, MissionResult& result);
+  void conclude(std::span<const OccupancyGrid* const> maps, MissionResult& result);
 
  private:
   void coarsen_playback();

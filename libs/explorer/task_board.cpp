@@ -5,12 +5,15 @@
 #include <limits>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "decision/frontiers.hpp"
 #include "world/ray.hpp"
 
 namespace outrider::explorer {
 namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Offsets within `reach` cells, nearest first; ties by row, then column.
 std::vector<Cell> offsets_within(int reach) {
@@ -40,10 +43,13 @@ class TaskBoard::Shortlist {
   explicit Shortlist(const TaskGrain& grain) : grain_(grain) {}
 
   bool bounded() const { return static_cast<bool>(grain_.most_bid); }
-  double most_bid(const BidEntry& entry) const { return bounded() ? grain_.most_bid(entry) : 0.0; }
-  /// May a bid of at most `most_bid` be among the best?
-  bool matters(double most_bid) const {
-    return !bounded() || least_bids_.size() < grain_.keep || most_bid >= least_bids_.front();
+  /// By which candidates are looked at; what a bid for it is at most, when that is known, else the nearest come first.
+  double rank(const BidEntry& entry) const {
+    return bounded() ? grain_.most_bid(entry) : -static_cast<double>(entry.distance);
+  }
+  /// May something of this rank be among the best?
+  bool matters(double rank) const {
+    return !bounded() || least_bids_.size() < grain_.keep || rank >= least_bids_.front();
   }
   bool full() const { return entries_.size() >= grain_.most; }
 
@@ -58,16 +64,11 @@ class TaskBoard::Shortlist {
   }
 
   std::vector<BidEntry> take() {
-    std::erase_if(entries_, [&](const BidEntry& e) { return !matters(most_bid(e)); });
+    std::erase_if(entries_, [&](const BidEntry& e) { return !matters(rank(e)); });
     const auto row_major = [](const BidEntry& a, const BidEntry& b) {
       return std::tie(a.task.y, a.task.x) < std::tie(b.task.y, b.task.x);
     };
     std::sort(entries_.begin(), entries_.end(), row_major);
-    if (entries_.size() > grain_.most) {
-      std::stable_sort(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
-      entries_.resize(grain_.most);
-      std::sort(entries_.begin(), entries_.end(), row_major);
-    }
     return std::move(entries_);
   }
 
@@ -77,15 +78,15 @@ class TaskBoard::Shortlist {
   std::vector<double> least_bids_;  // the `keep` best of the entries, a heap with the least in front
 };
 
-TaskBoard::TaskBoard(const RobotSpec& spec, const GridGeometry& geometry)
-    : spec_(spec), geometry_(geometry), tasks_(spec, geometry), field_(geometry) {
-  const double stand_off = std::min(spec.range, spec.radius + 2.0 * geometry.resolution);
-  near_ = offsets_within(static_cast<int>(stand_off / geometry.resolution));
+TaskBoard::TaskBoard(const RobotSpec& spec, const OccupancyGrid& map)
+    : spec_(spec), map_(map), geometry_(map.geometry()), tasks_(spec, map), field_(map.geometry()) {
+  stand_off_ = std::min(spec.range, spec.radius + 2.0 * geometry_.resolution);
+  near_ = offsets_within(static_cast<int>(stand_off_ / geometry_.resolution));
 }
 
-void TaskBoard::note_changes(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
-                             const decision::Passability& passable, std::span<const std::uint32_t> mask_changed) {
-  tasks_.update(map, changed, mask_changed);
+void TaskBoard::note_changes(std::span<const std::uint32_t> changed, const decision::Passability& passable,
+                             std::span<const std::uint32_t> mask_changed) {
+  tasks_.update(changed, mask_changed);
   if (mask_changed.empty()) return;
   field_.update(passable.mask(), mask_changed);
   search_at_.reset();
@@ -99,83 +100,157 @@ void TaskBoard::search_from(Cell at) {
 
 /// The nearest good cell around a task from which it can be seen.
 template <class Good>
-std::optional<Cell> TaskBoard::stand_for(const OccupancyGrid& map, Cell task, Good&& good) const {
+std::optional<Cell> TaskBoard::stand_for(Cell task, Good&& good) const {
   for (const Cell offset : near_) {
     const Cell c{task.x + offset.x, task.y + offset.y};
-    if (geometry_.contains(c) && good(c) && (c == task || line_of_sight(map, c, task))) return c;
+    if (geometry_.contains(c) && good(c) && (c == task || line_of_sight(map_, c, task))) return c;
   }
   return std::nullopt;
 }
 
-/// The tasks whose stands are farther than `beyond` [m] and not farther than `reach`. A task's stand is the nearest cell
-/// where the robot fits. At the end of the search, those that cannot be reached there get another one.
-std::vector<TaskBoard::Offer> TaskBoard::offers(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
-                                                double beyond, double reach, bool gains) {
-  std::vector<Offer> offers;
-  const double stand_off = spec_.radius + 3.0 * geometry_.resolution;
-  const double farthest = 1.02 * reach + stand_off;  // octile lengths are up to 1 % short
-  const double farthest2 = farthest * farthest / geometry_.cell_area();
-  tasks_.for_near(passable, at, farthest, [&](FrontierTask& task) {
-    const double dx = task.cell.x - at.x, dy = task.cell.y - at.y;
-    if (dx * dx + dy * dy > farthest2) return;
-    auto stand = stand_for(map, task.cell, [&](Cell c) { return passable.passable(c); });
-    double distance = stand ? field_.metres(*stand) : decision::ReachField::kNoLimit;
-    if (distance <= beyond || (distance > reach && !field_.exhausted())) return;
-    if (distance == decision::ReachField::kNoLimit) {
-      stand = stand_for(map, task.cell, [&](Cell c) { return field_.reached(c); });
-      if (!stand) return;
-      distance = field_.metres(*stand);
+/// One look for tasks, best first: the candidate that may be worth most is looked at more closely, its gain or its way,
+/// until both are known of all that may matter. The field is searched no farther than such a candidate is.
+class TaskBoard::Search {
+ public:
+  Search(TaskBoard& board, const decision::Passability& passable, Cell at, const TaskGrain& grain)
+      : board_(board), passable_(passable), at_(at), grain_(grain), list_(grain) {}
+
+  std::vector<BidEntry> run() {
+    list_farther();
+    while (!list_.full()) {
+      const double unlisted = unlisted_rank();
+      if (open_.empty() || open_.front().rank <= unlisted) {
+        if (all_listed() || !list_.matters(unlisted)) break;
+        list_farther();
+        continue;
+      }
+      if (!list_.matters(open_.front().rank)) break;
+      std::pop_heap(open_.begin(), open_.end());
+      const std::size_t best = open_.back().candidate;
+      open_.pop_back();
+      look_closer(candidates_[best], best);
     }
-    const double gain = gains ? tasks_.most_gain(task, *stand) : 0.0;
-    offers.push_back({&task, {task.cell, *stand, static_cast<float>(gain), static_cast<float>(distance)}, 0.0});
-  });
-  return offers;
-}
-
-/// How far to search after all within `reach` [m] is on the list: as far as a task may matter; `reach` when none does.
-double TaskBoard::next_reach(const Shortlist& list, double reach, bool gains) const {
-  constexpr double kFarther = 1.6, kClose = 0.03;
-  const auto matters = [&](double distance) {
-    const auto gain = static_cast<float>(gains ? tasks_.most_gain() : 0.0);
-    return list.matters(list.most_bid({{}, {}, gain, static_cast<float>(distance)}));
-  };
-  double near = reach, far = kFarther * reach;
-  if (!list.bounded() || matters(far)) return far;
-  if (!matters(near)) return near;
-  while (far > near * (1.0 + kClose)) {
-    const double middle = 0.5 * (near + far);
-    (matters(middle) ? near : far) = middle;
+    return list_.take();
   }
-  return far;
-}
 
-std::vector<BidEntry> TaskBoard::entries(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
-                                         const TaskGrain& grain) {
+ private:
+  struct Candidate {
+    FrontierTask* task;
+    BidEntry entry;  // the gain is at most this, the distance at least
+    bool placed = false, weighed = false, reached = false;  // stand, gain and distance are known
+  };
+  struct Open {
+    double rank;  // of the candidate at most
+    std::size_t candidate;
+    bool operator<(const Open& other) const {
+      return rank != other.rank ? rank < other.rank : candidate > other.candidate;
+    }
+  };
+
+  bool all_listed() const { return listed_m_ >= board_.geometry_.resolution * std::max(board_.geometry_.width, board_.geometry_.height); }
+  double most_gain(double gain) const { return grain_.gains ? gain : 0.0; }
+
+  /// Of the tasks outside the square that has been listed.
+  double unlisted_rank() const {
+    if (all_listed()) return -kNever;
+    const double distance = std::max(0.0, listed_m_ - board_.stand_off_);
+    return list_.rank({{}, {}, static_cast<float>(most_gain(board_.tasks_.most_gain())), static_cast<float>(distance)});
+  }
+
+  void list_farther() {
+    constexpr double kFarther = 1.6;
+    const double beyond = std::exchange(listed_m_, listed_m_ < 0.0 ? board_.spec_.range : kFarther * listed_m_);
+    board_.tasks_.for_near(passable_, at_, beyond, listed_m_, [&](FrontierTask& task) {
+      Candidate c{&task, {task.cell, task.cell}};
+      c.placed = passable_.passable(task.cell);
+      c.entry.distance = least_way(task.cell, c.placed ? 0.0 : board_.stand_off_);
+      c.entry.gain = static_cast<float>(
+          most_gain(c.placed ? board_.tasks_.most_gain(task, task.cell) : board_.tasks_.most_gain()));
+      if (!list_.matters(list_.rank(c.entry))) return;
+      candidates_.push_back(c);
+      push(candidates_.size() - 1);
+    });
+  }
+
+  /// No way to a place within `off` [m] of `c` is shorter.
+  float least_way(Cell c, double off) const {
+    const int dx = std::abs(c.x - at_.x), dy = std::abs(c.y - at_.y);
+    const int fifths = 5 * std::max(dx, dy) + 2 * std::min(dx, dy);
+    return static_cast<float>(std::max(0.0, fifths * board_.geometry_.resolution / 5.0 - off));
+  }
+
+  void push(std::size_t candidate) {
+    open_.push_back({list_.rank(candidates_[candidate].entry), candidate});
+    std::push_heap(open_.begin(), open_.end());
+  }
+
+  void look_closer(Candidate& c, std::size_t index) {
+    const bool gain_counts = list_.bounded() && grain_.gains;
+    if (!c.placed) {
+      if (find_place(c)) push(index);
+    } else if (!c.weighed && (gain_counts || c.reached)) {
+      weigh(c);
+      push(index);
+    } else if (!c.reached) {
+      if (reach(c)) push(index);
+    } else if (!board_.tasks_.is_left_over(*c.task, c.entry.stand)) {
+      list_.add(c.entry);
+    }
+  }
+
+  bool find_place(Candidate& c) {
+    auto stand = board_.stand_for(c.entry.task, [&](Cell s) { return passable_.passable(s); });
+    if (!stand) stand = board_.stand_for(c.entry.task, [&](Cell s) { return s == at_; });
+    if (stand) place(c, *stand);
+    return stand.has_value();
+  }
+
+  void place(Candidate& c, Cell stand) {
+    c.entry.stand = stand;
+    c.entry.distance = least_way(stand, 0.0);
+    c.entry.gain = static_cast<float>(most_gain(board_.tasks_.most_gain(*c.task, stand)));
+    c.placed = true;
+    c.weighed = c.reached = false;
+  }
+
+  void weigh(Candidate& c) const {
+    FrontierTasks& tasks = board_.tasks_;
+    c.weighed = true;
+    if (!grain_.gains && tasks.least_gain() == 0.0) return;
+    const bool left_over = tasks.is_left_over(*c.task, c.entry.stand);  // that it stays
+    c.entry.gain = static_cast<float>(
+        most_gain(left_over ? c.task->gain : tasks.gain(*c.task, c.entry.stand, grain_.whole_footprint)));
+  }
+
+  /// False when there is no way to it.
+  bool reach(Candidate& c) {
+    constexpr double kFarther = 1.05;
+    decision::ReachField& field = board_.field_;
+    const double search_m = kFarther * c.entry.distance + board_.geometry_.resolution;
+    field.extend(search_m);
+    c.reached = field.reached(c.entry.stand);
+    c.entry.distance = static_cast<float>(c.reached ? field.metres(c.entry.stand) : search_m);
+    if (c.reached || !field.exhausted()) return true;
+    // All is known that can be reached, and the task's nearest stand is not: is another?
+    const auto stand = board_.stand_for(c.entry.task, [&](Cell s) { return field.reached(s); });
+    if (stand) place(c, *stand);
+    return stand.has_value();
+  }
+
+  TaskBoard& board_;
+  const decision::Passability& passable_;
+  Cell at_;
+  const TaskGrain& grain_;
+  Shortlist list_;
+  std::vector<Candidate> candidates_;
+  std::vector<Open> open_;       // a heap, the greatest rank in front
+  double listed_m_ = -1.0;       // half edge of the square around `at` whose tasks are candidates or done
+};
+
+std::vector<BidEntry> TaskBoard::entries(const decision::Passability& passable, Cell at, const TaskGrain& grain) {
   tasks_.set_spacing(grain.spacing);
   search_from(at);
-  Shortlist list(grain);
-  double beyond = -1.0, reach = spec_.range + geometry_.resolution;
-  for (;;) {
-    field_.extend(reach);
-    if (field_.exhausted()) reach = decision::ReachField::kNoLimit;
-    std::vector<Offer> ring = offers(map, passable, at, beyond, reach, grain.gains);
-    for (Offer& offer : ring) offer.most_bid = list.most_bid(offer.entry);
-    std::stable_sort(ring.begin(), ring.end(), [](const Offer& a, const Offer& b) { return a.most_bid > b.most_bid; });
-    for (Offer& offer : ring) {
-      if (!list.matters(offer.most_bid)) break;
-      if (grain.gains || tasks_.least_gain() > 0.0) {
-        if (tasks_.is_left_over(*offer.task, offer.entry.stand)) continue;
-        const double gain = tasks_.gain(map, *offer.task, offer.entry.stand, grain.whole_footprint);
-        if (tasks_.is_left_over(*offer.task, offer.entry.stand)) continue;
-        if (grain.gains) offer.entry.gain = static_cast<float>(gain);
-      }
-      list.add(offer.entry);
-    }
-    beyond = reach;
-    reach = list.full() || field_.exhausted() ? beyond : next_reach(list, beyond, grain.gains);
-    if (reach == beyond) break;
-  }
-  return list.take();
+  return Search(*this, passable, at, grain).run();
 }
 
 std::vector<Cell> TaskBoard::path_to(Cell at, Cell stand) {

@@ -17,7 +17,7 @@ namespace outrider::explorer {
 /// Which tasks a coordinator wants to hear of.
 struct TaskGrain {
   double spacing = 1.0;      ///< one task a block of this edge and piece of frontier [m]; the paper's cells are 1 m
-  std::size_t most = 256;    ///< the nearest so many
+  std::size_t most = 256;    ///< at most so many
   bool gains = true;         ///< compute BidEntry::gain, else it is 0
   bool whole_footprint = false;  ///< gains count known cells too; the same for all calls on one board
   /// When set: tasks that cannot be among the `keep` best of the list need not be on it, and nobody searches for them. A
@@ -40,22 +40,23 @@ struct Left {
 /// from where it is.
 class TaskBoard {
  public:
-  TaskBoard(const RobotSpec& spec, const GridGeometry& geometry);
+  /// `map` is the robot's own: it outlives the board, and all calls mean it.
+  TaskBoard(const RobotSpec& spec, const OccupancyGrid& map);
 
   /// The map changed in the cells `changed`, the mask of passable cells in `mask_changed`. O(changed).
-  void note_changes(const OccupancyGrid& map, std::span<const std::uint32_t> changed,
-                    const decision::Passability& passable, std::span<const std::uint32_t> mask_changed);
+  void note_changes(std::span<const std::uint32_t> changed, const decision::Passability& passable,
+                    std::span<const std::uint32_t> mask_changed);
   /// The tasks that this robot can serve from cell `at` and that `grain` asks for, by task position (row, then column).
-  /// O(cells nearer than the farthest task that may matter).
-  std::vector<BidEntry> entries(const OccupancyGrid& map, const decision::Passability& passable, Cell at,
-                                const TaskGrain& grain);
+  /// Of more than `most` those that are nearest, or with bids given the best. O(cells nearer than the farthest task that
+  /// may matter, and tasks nearer than one that shows a whole disc might be).
+  std::vector<BidEntry> entries(const decision::Passability& passable, Cell at, const TaskGrain& grain);
   /// The shortest safe path from `at` to `stand`, both included; empty when there is none.
   std::vector<Cell> path_to(Cell at, Cell stand);
   /// Some frontier is left within a block's reach of `task`.
   bool frontier_near(Cell task, double spacing) const { return tasks_.frontier_near(task, spacing); }
   /// Going to `stand` would still show something worth the way.
-  bool is_worth_it(const OccupancyGrid& map, Cell stand) const {
-    return tasks_.least_gain() == 0.0 || tasks_.unseen(map, stand) >= tasks_.least_gain();
+  bool is_worth_it(Cell stand) const {
+    return tasks_.least_gain() == 0.0 || tasks_.unseen(stand) >= tasks_.least_gain();
   }
   /// The frontier around `task` is never tried again. `tried`: the robot stood right there and saw nothing new. See
   /// FrontierTasks::give_up().
@@ -66,29 +67,24 @@ class TaskBoard {
   void defer(Cell task, double spacing, double until_s) { tasks_.defer(task, spacing, until_s); }
   /// Offers again what was deferred until now or earlier. True when some frontier still waits.
   bool any_deferred(double now_s) { return tasks_.any_deferred(now_s); }
-  /// Frontier clusters of `map` with the reason why this robot would leave each. O(cells).
+  /// Frontier clusters of `map`, which may be another, with the reason why this robot would leave each. O(cells).
   std::vector<Left> left(const OccupancyGrid& map) const;
 
  private:
-  struct Offer {
-    FrontierTask* task;
-    BidEntry entry;   // with the gain that it has at most
-    double most_bid;
-  };
+  class Search;
   class Shortlist;
 
   void search_from(Cell at);
-  std::vector<Offer> offers(const OccupancyGrid& map, const decision::Passability& passable, Cell at, double beyond,
-                            double reach, bool gains);
-  double next_reach(const Shortlist& list, double reach, bool gains) const;
   template <class Good>
-  std::optional<Cell> stand_for(const OccupancyGrid& map, Cell task, Good&& good) const;
+  std::optional<Cell> stand_for(Cell task, Good&& good) const;
 
   RobotSpec spec_;
+  const OccupancyGrid& map_;
   GridGeometry geometry_;
   FrontierTasks tasks_;
   decision::ReachField field_;            // from search_at_, while that is set
   std::optional<Cell> search_at_;
+  double stand_off_;                      // a robot stands no farther from a task than this [m]
   std::vector<Cell> near_;                // offsets around a task where a robot may stand, nearest first
 };
 

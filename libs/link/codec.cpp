@@ -83,7 +83,7 @@ const std::array<Kind, std::variant_size_v<Message>>& kinds() {
       kind<map_digest_t>("OUTRIDER_DIGEST", form<map_digest_t, tile_mark_t>(MapDigest::kMostMarks)),
       kind<tile_request_t>("OUTRIDER_REQUEST", form<tile_request_t, std::int32_t>(TileRequest::kMostTiles)),
       kind<map_tile_t>("OUTRIDER_TILE", form<map_tile_t>(MapTile::kMostCells)),
-      kind<round_open_t>("OUTRIDER_OPEN", form<round_open_t, std::int16_t>(RoundOpen::kMostHeard)),
+      kind<round_open_t>("OUTRIDER_OPEN", form<round_open_t, std::int16_t, std::int16_t>(RoundOpen::kMostHeard, RoundOpen::kMostAsked)),
       kind<bid_sheet_t>("OUTRIDER_BIDS", form<bid_sheet_t, bid_entry_t>(BidSheet::kMostEntries)),
       kind<awards_t>("OUTRIDER_AWARDS",
                      form<awards_t, std::int16_t, award_t>(Awards::kMostBidders, Awards::kMostBidders)),
@@ -110,7 +110,7 @@ struct Counts {
   Pair operator()(const MapDigest& m) const { return {m.marks.size(), 0}; }
   Pair operator()(const TileRequest& m) const { return {m.tiles.size(), 0}; }
   Pair operator()(const MapTile& m) const { return {m.cells.size(), 0}; }
-  Pair operator()(const RoundOpen& m) const { return {m.heard.size(), 0}; }
+  Pair operator()(const RoundOpen& m) const { return {m.heard.size(), m.asked.size()}; }
   Pair operator()(const BidSheet& m) const { return {m.entries.size(), 0}; }
   Pair operator()(const Awards& m) const { return {m.bidders.size(), m.awards.size()}; }
   Pair operator()(const ClaimSheet& m) const { return {m.claims.size(), m.prices.size()}; }

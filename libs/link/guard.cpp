@@ -85,7 +85,7 @@ bool Guard::in_map(const Message& message) const {
     return inside_if(m->goal) && all(m->way, inside) && all(m->heard, member) && member(m->asks.value_or(0));
   if (const auto* m = std::get_if<MapUpdate>(&message))
     return all(m->runs, [&](const CellRun& run) { return run.index + std::size_t{run.length} <= g.size(); });
-  if (const auto* m = std::get_if<RoundOpen>(&message)) return all(m->heard, member);
+  if (const auto* m = std::get_if<RoundOpen>(&message)) return all(m->heard, member) && all(m->asked, member);
   if (const auto* m = std::get_if<BidSheet>(&message))
     return member(m->round.opener) && inside_if(m->goal) &&
            all(m->entries, [&](const BidEntry& e) { return inside(e.task) && inside(e.stand); });

@@ -157,12 +157,14 @@ round_open_t to_wire(const RoundOpen& m) {
   w.count = i32(m.round.count);
   w.n_heard = i16(m.heard.size());
   w.heard = robots(m.heard);
+  w.n_asked = i16(m.asked.size());
+  w.asked = robots(m.asked);
   return w;
 }
 
 std::optional<Message> from_wire(const round_open_t& w, RobotId sender) {
-  if (!robots(w.heard)) return {};
-  return RoundOpen{{sender, u32(w.count)}, {w.heard.begin(), w.heard.end()}};
+  if (!robots(w.heard) || !robots(w.asked)) return {};
+  return RoundOpen{{sender, u32(w.count)}, {w.heard.begin(), w.heard.end()}, {w.asked.begin(), w.asked.end()}};
 }
 
 bid_sheet_t to_wire(const BidSheet& m) {

@@ -22,7 +22,7 @@ std::optional<Grid<std::uint8_t>> seen_counts(std::span<const RobotRecord> robot
   for (const RobotRecord& robot : robots) {
     if (robot.seen.geometry() != counts.geometry()) return std::nullopt;
     for (std::size_t i = 0; i < counts.size(); ++i)
-      if (robot.seen[i] != 0 && counts[i] < 255) ++counts[i];
+      if (robot.seen[i] && counts[i] < 255) ++counts[i];
   }
   return counts;
 }
@@ -36,25 +36,30 @@ std::optional<SeenAreas> seen_areas(std::span<const RobotRecord> robots) {
   SeenAreas areas{static_cast<double>(cells[1]) * area, static_cast<double>(cells[2]) * area,
                   static_cast<double>(cells[3]) * area};
   for (const RobotRecord& robot : robots)
-    areas.sum +=
-        area * static_cast<double>(robot.seen.size() - static_cast<std::size_t>(std::count(
-                                                           robot.seen.data().begin(), robot.seen.data().end(), 0)));
+    areas.sum += area * static_cast<double>(robot.seen.count());
   return areas;
 }
 
 std::optional<std::vector<PairOverlap>> pair_overlaps(std::span<const RobotRecord> robots) {
-  if (!seen_counts(robots)) return std::nullopt;
-  const double area = robots[0].seen.geometry().cell_area();
-  const auto seen_m2 = [&](std::size_t i) {
-    const auto& cells = robots[i].seen.data();
-    return area * static_cast<double>(cells.size() - static_cast<std::size_t>(std::count(cells.begin(), cells.end(), 0)));
-  };
+  const auto counts = seen_counts(robots);
+  if (!counts) return std::nullopt;
+  const std::size_t n = robots.size();
+  std::vector<std::size_t> own(n, 0), both(n * n, 0), here;
+  for (std::size_t i = 0; i < counts->size(); ++i) {
+    here.clear();
+    for (std::size_t r = 0, left = (*counts)[i]; r < n && (left > 0 || (*counts)[i] == 255); ++r)
+      if (robots[r].seen[i]) here.push_back(r), --left;
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      ++own[here[k]];
+      for (std::size_t l = k + 1; l < here.size(); ++l) ++both[here[k] * n + here[l]];
+    }
+  }
+  const double area = counts->geometry().cell_area();
   std::vector<PairOverlap> pairs;
-  for (std::size_t a = 0; a < robots.size(); ++a)
-    for (std::size_t b = a + 1; b < robots.size(); ++b) {
-      std::size_t both = 0;
-      for (std::size_t i = 0; i < robots[a].seen.size(); ++i) both += robots[a].seen[i] != 0 && robots[b].seen[i] != 0;
-      const double m2 = area * static_cast<double>(both), smaller = std::min(seen_m2(a), seen_m2(b));
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = a + 1; b < n; ++b) {
+      const double m2 = area * static_cast<double>(both[a * n + b]);
+      const double smaller = area * static_cast<double>(std::min(own[a], own[b]));
       pairs.push_back({a, b, m2, smaller > 0.0 ? m2 / smaller : 0.0});
     }
   return pairs;
@@ -170,9 +175,11 @@ void derive_overlap(const RunRecord& record, Json& derived) {
   Json& overlap = derived["overlap"];
   const auto name = [&](std::size_t i) { return record.robots[i].spec.name; };
   overlap["pairs"] = Json::array();
+  constexpr std::size_t kMany = 100;  // pairs; of more only those that have something in common
   for (const PairOverlap& pair : *pairs)
-    overlap["pairs"].push_back(
-        {{"robots", {name(pair.a), name(pair.b)}}, {"m2", pair.m2}, {"share_of_smaller", pair.share_of_smaller}});
+    if (pair.m2 > 0.0 || pairs->size() <= kMany)
+      overlap["pairs"].push_back(
+          {{"robots", {name(pair.a), name(pair.b)}}, {"m2", pair.m2}, {"share_of_smaller", pair.share_of_smaller}});
   const std::vector<double> wasted = wasted_m(record);
   for (std::size_t i = 0; i < wasted.size(); ++i) overlap["wasted_m"][name(i)] = wasted[i];
 }

@@ -35,7 +35,8 @@ struct PairOverlap {
   double m2 = 0.0;
   double share_of_smaller = 0.0;  ///< of the area that the robot that saw less has seen
 };
-/// Every pair, in the order of the team; absent when `seen_counts` is. O(cells * robots^2).
+/// Every pair, in the order of the team; absent when `seen_counts` is. O(cells * robots + robots^2), and
+/// what k robots saw counts k^2 / 2 times.
 std::optional<std::vector<PairOverlap>> pair_overlaps(std::span<const RobotRecord> robots);
 
 /// Distance that each robot drove in rows of the timeline in which it added nothing to what the team has seen [m]; empty

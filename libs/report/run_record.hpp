@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "world/bit_grid.hpp"
 #include "world/grid.hpp"
 #include "world/robot.hpp"
 
@@ -26,7 +27,7 @@ struct RobotRecord {
   RobotSpec spec;                     ///< name, abilities, start
   std::vector<TimedPose> trajectory;  ///< as driven (T_map_robot), time ascending
   std::optional<OccupancyGrid> map;   ///< its own map at the end
-  Grid<std::uint8_t> seen;            ///< 1 where this robot's own sensor saw the cell; empty grid = unknown
+  BitGrid seen;                       ///< where this robot's own sensor saw the cell; empty grid = unknown
   double first_seen_m2 = 0.0;         ///< area that this robot was the first of the team to see [m^2]
   bool in_team_frame = true;          ///< false: its trajectory and map could not be placed in the team's map
   double clock_s = 0.0;               ///< stamp of the trajectory at time 0 of the timeline [s]

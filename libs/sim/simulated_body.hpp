@@ -38,7 +38,7 @@ class SimulatedBody final : public Body {
   const RobotSpec& spec;
   const Walls& walls;
   const CellSensor* cell_sensor = nullptr;  ///< cell sensing
-  std::vector<std::uint8_t> seen;           ///< one byte a cell, cell sensing
+  std::vector<bool> seen;                   ///< of each cell, cell sensing
   Cell sensed_from{-1, -1};                 ///< last cell sensed from
   std::optional<Lidar> lidar;               ///< lidar sensing
   Pose2 pose;

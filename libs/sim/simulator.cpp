@@ -26,6 +26,11 @@ std::string describe(const SimulatedBody& body) {
                      body.spec.radius);
 }
 
+/// distance(a, b) <= r, at little cost for points far apart.
+bool within(Point a, Point b, double r) {
+  return std::abs(a.x - b.x) <= r && std::abs(a.y - b.y) <= r && distance(a, b) <= r;
+}
+
 /// A robot's own stream: the seeds of neighbouring robots and of neighbouring runs must not be alike (splitmix64).
 std::uint64_t stream_seed(std::uint64_t seed, std::uint64_t robot) {
   std::uint64_t z = seed * 0x9E3779B97F4A7C15U + (robot + 1) * 0xD1B54A32D192ED03U;
@@ -80,7 +85,7 @@ void Simulator::Impl::add_body(std::size_t id) {
     body.lidar.emplace(robot, options.range_noise, stream_seed(options.seed, id));
   } else {
     body.cell_sensor = &cell_sensors.try_emplace(robot.range, truth, robot.range).first->second;
-    body.seen.assign(truth.size(), 0);
+    body.seen.assign(truth.size(), false);
   }
 }
 
@@ -110,8 +115,8 @@ void Simulator::Impl::advance(SimulatedBody& body, double way) {
 std::vector<const SimulatedBody*> Simulator::Impl::bodies_near(const SimulatedBody& body, double way) const {
   std::vector<const SimulatedBody*> near;
   for (const auto& other : bodies)
-    if (other.get() != &body && distance(body.pose.position(), other->pose.position()) <=
-                                    way + body.spec.radius + other->spec.radius + kTouchTolerance)
+    if (other.get() != &body && within(body.pose.position(), other->pose.position(),
+                                       way + body.spec.radius + other->spec.radius + kTouchTolerance))
       near.push_back(other.get());
   return near;
 }
@@ -147,8 +152,8 @@ std::vector<Sighting> Simulator::Impl::in_view_of(const SimulatedBody& body) con
   for (std::size_t id = 0; id < bodies.size(); ++id) {
     const SimulatedBody& other = *bodies[id];
     const Point to = other.pose.position();
+    if (&other == &body || !within(from, to, body.spec.range)) continue;
     const double apart = distance(from, to);
-    if (&other == &body || apart > body.spec.range) continue;
     bool clear = true;
     walk_ray(solid.geometry(), from, (to.x - from.x) / apart, (to.y - from.y) / apart, apart, [&](Cell c, double) {
       clear = solid[c] == CellState::kFree;
@@ -169,8 +174,9 @@ std::optional<std::string> Simulator::Impl::violation() const {
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-      const double apart = distance(bodies[i]->pose.position(), bodies[j]->pose.position());
-      if (apart < bodies[i]->spec.radius + bodies[j]->spec.radius - kTouchTolerance)
+      const double touching = bodies[i]->spec.radius + bodies[j]->spec.radius - kTouchTolerance;
+      const Point a = bodies[i]->pose.position(), b = bodies[j]->pose.position();
+      if (within(a, b, touching) && distance(a, b) < touching)
         return describe(*bodies[i]) + " overlaps " + describe(*bodies[j]);
     }
   return std::nullopt;

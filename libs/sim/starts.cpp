@@ -60,18 +60,29 @@ void spread(const Walls& walls, const GridGeometry& g, const std::vector<Cell>& 
   }
 }
 
+/// The cells that a disc can reach from `first`, in any order; marks them in `known`.
+std::vector<Cell> region_of(const Walls& walls, const GridGeometry& g, Cell first, std::vector<bool>& known) {
+  std::vector<Cell> region{first};
+  known[g.index(first)] = true;
+  for (std::size_t k = 0; k < region.size(); ++k) {
+    const Cell c = region[k];
+    // A diagonal step needs both cells beside it, so that these four lead everywhere.
+    for (const Cell next : {Cell{c.x + 1, c.y}, Cell{c.x - 1, c.y}, Cell{c.x, c.y + 1}, Cell{c.x, c.y - 1}}) {
+      if (!walls.passable(next) || known[g.index(next)]) continue;
+      known[g.index(next)] = true;
+      region.push_back(next);
+    }
+  }
+  return region;
+}
+
 /// The passable cell nearest to the middle of the largest region that a disc can drive in.
 std::optional<Cell> middle_of_largest_region(const Walls& walls, const GridGeometry& g) {
   std::vector<bool> known(g.size(), false);
   std::vector<Cell> largest;
   for (std::size_t i = 0; i < g.size(); ++i) {
     if (known[i] || !walls.passable(g.cell_at(i))) continue;
-    std::vector<Cell> region;
-    spread(walls, g, {g.cell_at(i)}, [&](Cell c, std::size_t) {
-      known[g.index(c)] = true;
-      region.push_back(c);
-      return true;
-    });
+    std::vector<Cell> region = region_of(walls, g, g.cell_at(i), known);
     if (region.size() > largest.size()) largest = std::move(region);
   }
   if (largest.empty()) return std::nullopt;

@@ -125,11 +125,12 @@ CellSensor::Node CellSensor::compiled(const VisibilityTree::Node& from, Cell par
   return node;
 }
 
-void CellSensor::sense(Cell from, std::vector<std::uint8_t>& seen, std::vector<SeenCell>& out) const {
+template <class Seen>
+void CellSensor::sense(Cell from, Seen& seen, std::vector<SeenCell>& out) const {
   const auto report = [&](std::int64_t index, CellState state) {
     const auto i = static_cast<std::size_t>(index);
-    if (seen[i] != 0) return;
-    seen[i] = 1;
+    if (seen[i]) return;
+    seen[i] = true;
     out.push_back({static_cast<std::uint32_t>(i), state});
   };
   const auto here = static_cast<std::int64_t>(geometry_.index(from));
@@ -151,5 +152,8 @@ void CellSensor::sense(Cell from, std::vector<std::uint8_t>& seen, std::vector<S
     ++i;
   }
 }
+
+template void CellSensor::sense(Cell, std::vector<bool>&, std::vector<SeenCell>&) const;
+template void CellSensor::sense(Cell, std::vector<std::uint8_t>&, std::vector<SeenCell>&) const;
 
 }  // namespace outrider::sim

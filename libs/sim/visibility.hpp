@@ -41,9 +41,10 @@ class CellSensor {
   /// `range` [m]. Unknown cells of `truth` look occupied. Copies what it needs.
   CellSensor(const OccupancyGrid& truth, double range);
 
-  /// Appends to `out` the cells seen from `from` (a free cell) that are not yet marked in `seen` (one byte a cell), and
-  /// marks them. O(cells of the disc that are in view).
-  void sense(Cell from, std::vector<std::uint8_t>& seen, std::vector<SeenCell>& out) const;
+  /// Appends to `out` the cells seen from `from` (a free cell) that are not yet marked in `seen` (a vector of bool or of
+  /// bytes, one a cell), and marks them. O(cells of the disc that are in view).
+  template <class Seen>
+  void sense(Cell from, Seen& seen, std::vector<SeenCell>& out) const;
 
  private:
   struct Node {

@@ -100,11 +100,12 @@ struct RoundId {
   friend bool operator==(const RoundId&, const RoundId&) = default;
 };
 
-/// "I finished my task": every robot that hears it answers with its bids. Repeated while the round is open.
+/// "I finished my task": every robot that is asked answers with its bids. Repeated while the round is open.
 struct RoundOpen {
   RoundId round;
   std::vector<RobotId> heard;  ///< whose sheets are in; at most kMostHeard
-  static constexpr std::size_t kMostHeard = 500;
+  std::vector<RobotId> asked;  ///< of a large team the nearest; nobody named: all who hear it. At most kMostAsked
+  static constexpr std::size_t kMostHeard = 500, kMostAsked = 32;
 };
 
 /// What task p would be worth to robot i and what it costs, before the influence of team-mates.

@@ -20,8 +20,7 @@ struct Tiling {
   std::size_t count() const {
     return static_cast<std::size_t>(across()) * static_cast<std::size_t>((geometry.height + kEdge - 1) / kEdge);
   }
-  std::size_t tile_of(std::size_t index) const {
-    const Cell c = geometry.cell_at(index);
+  std::size_t tile_at(Cell c) const {
     return static_cast<std::size_t>(c.y / kEdge) * static_cast<std::size_t>(across()) + static_cast<std::size_t>(c.x / kEdge);
   }
   /// Calls visit(index) for the cells of a tile, row by row from its lower left.
@@ -34,9 +33,10 @@ struct Tiling {
   }
 };
 
-/// What one robot knows of the world: its own observations and what team-mates reported. A cell is one byte, version and
-/// state; the greater byte wins. Merging is therefore commutative, associative and idempotent: robots that have heard
-/// the same changes, in whatever order and however often, hold the same map.
+/// What one robot knows of the world: its own observations and what team-mates reported. A cell is a value, version and
+/// state; the greater value wins. Merging is therefore commutative, associative and idempotent: robots that have heard
+/// the same changes, in whatever order and however often, hold the same map. A byte a cell, and a second one in those
+/// tiles that hold a version other than 1.
 class TeamMap {
  public:
   static constexpr int kMostVersions = 63;  ///< the byte holds no more; then the greater state stands
@@ -64,11 +64,14 @@ class TeamMap {
   std::vector<std::uint32_t> take_changed() { return std::exchange(changed_, {}); }
 
  private:
-  bool raise(std::uint32_t index, std::uint8_t value);
+  bool raise(std::uint32_t index, Cell at, std::uint8_t value);
+  std::uint8_t value(std::size_t index, std::size_t tile) const;
+  void set_value(std::size_t index, std::size_t tile, std::uint8_t value);
+  static std::size_t in_tile(Cell at);
 
   Tiling tiling_;
   OccupancyGrid states_;
-  Grid<std::uint8_t> values_;  // version * 4 + state
+  std::vector<std::vector<std::uint8_t>> values_;  // version * 4 + state of a tile's cells; none: version 1 where known
   std::vector<TileMark> marks_;
   std::uint64_t hash_ = 0;
   std::vector<std::uint32_t> to_share_, changed_;

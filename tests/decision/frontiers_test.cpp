@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <limits>
+#include <random>
 #include <set>
 
 #include "support/ascii.hpp"
@@ -146,6 +147,23 @@ TEST(Frontiers, CentroidOfOneCellIsThatCell) {
   EXPECT_NEAR(found.clusters[0].centroid.x, 1.525, 1e-12);
   EXPECT_NEAR(found.clusters[0].centroid.y, 2.225, 1e-12);
   EXPECT_EQ(found.clusters[0].medoid, (Cell{10, 4}));
+}
+
+TEST(Frontiers, OfARectangleAreThoseOfTheDefinition) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const OccupancyGrid map = test::random_map(seed, seed % 4 == 0 ? 200 : 30);
+    const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+    const Cell low{below(map.width()), below(map.height())};
+    const Cell high{low.x + 1 + below(map.width() - low.x), low.y + 1 + below(map.height() - low.y)};
+    std::vector<Cell> found, expected;
+    for_frontier(map, low, high, [&](Cell c) { found.push_back(c); });
+    for (int y = low.y; y < high.y; ++y)
+      for (int x = low.x; x < high.x; ++x)
+        if (is_frontier(map, {x, y})) expected.push_back({x, y});
+    ASSERT_EQ(found, expected);
+  }
 }
 
 }  // namespace

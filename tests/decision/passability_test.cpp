@@ -106,7 +106,7 @@ TEST(Passability, RefusesImpossibleRadii) {
   EXPECT_THROW(Passability(g, -0.1), InputError);
   EXPECT_THROW(Passability(g, std::nan("")), InputError);
   EXPECT_THROW(Passability(g, 7.0), InputError);
-  EXPECT_NO_THROW(Passability(g, 6.4));
+  EXPECT_NO_THROW(Passability(g, 3.2));
 }
 
 TEST(Passability, AllowedStepsNeverTouchAnObstacle) {

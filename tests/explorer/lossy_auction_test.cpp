@@ -323,5 +323,18 @@ TEST(LossyAuction, UnderTheIdealRadioNothingIsSaidTwice) {
   EXPECT_LE(team.messages, statuses + changes + team.records.size() * (1 + 3 * 4 + 1));
 }
 
+TEST(LossyAuction, InALargeTeamARoundAsksTheNeighboursOnlyAndEverythingIsServedAllTheSame) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE(seed);
+    Bidders team(40, 80, seed);
+    std::size_t most = 0;
+    team.on_record = [&](const AuctionRecord& record) { most = std::max(most, record.sheets.size()); };
+    while (!team.tasks_.empty() && team.now_ < 120.0) team.run(1.0, {});
+    EXPECT_EQ(most, kMostAsked + 1);
+    EXPECT_TRUE(team.tasks_.empty()) << team.tasks_.size() << " left";
+    EXPECT_LE(team.longest_conflict_s, kLease);
+  }
+}
+
 }  // namespace
 }  // namespace outrider::explorer

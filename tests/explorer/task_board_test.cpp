@@ -108,7 +108,7 @@ struct Discovery {
         truth(test::random_map(seed, 40, 0.5)),
         map(truth.geometry()),
         passable(truth.geometry(), spec().radius),
-        board(spec(), truth.geometry()) {}
+        board(spec(), map) {}
 
   static const RobotSpec& spec() {
     static const RobotSpec robot = [] {
@@ -133,7 +133,7 @@ struct Discovery {
       changed.push_back(static_cast<std::uint32_t>(i));
     }
     const auto mask_changed = passable.update(map, changed);
-    board.note_changes(map, changed, passable, mask_changed);
+    board.note_changes(changed, passable, mask_changed);
   }
   Cell somewhere() { return truth.geometry().cell_at(random() % truth.size()); }
   Oracle oracle() const { return {spec(), map, passable}; }
@@ -153,9 +153,9 @@ TEST(TaskBoard, ListsEveryTaskThatTheDefinitionNamesWhileTheMapGrows) {
       d.look();
       const double spacing = step % 3 == 2 ? 2.0 : 0.5;
       const Cell at = d.somewhere();
-      expect_same(d.board.entries(d.map, d.passable, at, {.spacing = spacing, .most = 100000}),
+      expect_same(d.board.entries(d.passable, at, {.spacing = spacing, .most = 100000}),
                   d.oracle().entries(at, spacing));
-      for (const BidEntry& e : d.board.entries(d.map, d.passable, at, {.spacing = spacing})) {
+      for (const BidEntry& e : d.board.entries(d.passable, at, {.spacing = spacing})) {
         const auto path = d.board.path_to(at, e.stand);
         ASSERT_FALSE(path.empty());
         EXPECT_EQ(path.front(), at);
@@ -178,8 +178,8 @@ TEST(TaskBoard, AShortListHoldsTheBestOfTheLongOne) {
       const Cell at = d.somewhere();
       const TaskGrain everything{.spacing = 0.5, .most = 100000};
       TaskGrain few{.spacing = 0.5, .least_bid = least, .most_bid = most, .keep = 1 + d.random() % 4};
-      const auto brief = d.board.entries(d.map, d.passable, at, few);
-      auto all = d.board.entries(d.map, d.passable, at, everything);
+      const auto brief = d.board.entries(d.passable, at, few);
+      auto all = d.board.entries(d.passable, at, everything);
       const auto served_elsewhere = [&](const BidEntry& e) {  // known at the end of a search only
         return e.stand != d.oracle().stand(e.task, [&](Cell c) { return d.passable.passable(c); });
       };
@@ -200,11 +200,11 @@ TEST(TaskBoard, WhatWasGivenUpIsNotOfferedAgain) {
   Discovery d(3);
   for (int step = 0; step < 6; ++step) d.look();
   const Cell at = d.somewhere();
-  auto entries = d.board.entries(d.map, d.passable, at, {.spacing = 0.5});
+  auto entries = d.board.entries(d.passable, at, {.spacing = 0.5});
   for (std::size_t round = 0; !entries.empty(); ++round) {
     ASSERT_LT(round, d.map.size());
     d.board.give_up(entries.front().task, true, 0.5);
-    const auto fewer = d.board.entries(d.map, d.passable, at, {.spacing = 0.5});
+    const auto fewer = d.board.entries(d.passable, at, {.spacing = 0.5});
     ASSERT_LT(fewer.size(), entries.size());
     entries = fewer;
   }

@@ -96,7 +96,8 @@ class MessageSource {
       case 2: return MapDigest{robot, below(80), list(MapDigest::kMostMarks, [&] { return TileMark{word(), word()}; })};
       case 3: return TileRequest{robot, number(8), list(TileRequest::kMostTiles, [&] { return below(80); })};
       case 4: return MapTile{robot, below(80), list(MapTile::kMostCells, [&] { return static_cast<std::uint8_t>(below(256)); })};
-      case 5: return RoundOpen{{robot, word()}, list(RoundOpen::kMostHeard, [&] { return number(500); })};
+      case 5: return RoundOpen{{robot, word()}, list(RoundOpen::kMostHeard, [&] { return number(500); }),
+                               list(RoundOpen::kMostAsked, [&] { return number(500); })};
       case 6: return sheet(robot);
       case 7: return awards(robot);
       case 8: return introduction(robot);

@@ -31,11 +31,11 @@ inline OccupancyGrid ascii_map(const std::vector<std::string>& rows) {
 }
 
 /// '1' where the robot saw the cell.
-inline Grid<std::uint8_t> ascii_seen(const std::vector<std::string>& rows) {
-  Grid<std::uint8_t> seen({1.0, {0.0, 0.0}, static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
+inline BitGrid ascii_seen(const std::vector<std::string>& rows) {
+  BitGrid seen({1.0, {0.0, 0.0}, static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const Cell c = seen.geometry().cell_at(i);
-    seen[i] = rows[rows.size() - 1 - static_cast<std::size_t>(c.y)][static_cast<std::size_t>(c.x)] == '1';
+    if (rows[rows.size() - 1 - static_cast<std::size_t>(c.y)][static_cast<std::size_t>(c.x)] == '1') seen.insert(i);
   }
   return seen;
 }

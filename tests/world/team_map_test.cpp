@@ -38,6 +38,30 @@ TEST(TeamMap, EndsEqualWhateverTheOrderOfTheNews) {
   }
 }
 
+// Versions are kept only where there are any; a plain array of values knows them all.
+TEST(TeamMap, HoldsTheGreatestValueOfEveryCell) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    TeamMap map({1.0, {0.0, 0.0}, 70, 40});
+    std::vector<std::uint8_t> plain(map.states().size(), 0);
+    const unsigned most = seed % 3 == 0 ? 12 : 3;  // mostly first versions, or many
+    for (int k = 0; k < 200; ++k) {
+      const CellRun run{static_cast<std::uint32_t>(random() % plain.size()), static_cast<std::uint8_t>(1 + random() % 60),
+                        static_cast<std::uint8_t>(4 + random() % most)};
+      map.merge(run);
+      for (std::size_t i = run.index; i < std::min<std::size_t>(run.index + run.length, plain.size()); ++i)
+        if ((run.value & 3) != 3) plain[i] = std::max(plain[i], run.value);  // 3 is no state
+    }
+    for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(static_cast<int>(map.states()[i]), plain[i] & 3) << i;
+    for (std::size_t tile = 0; tile < map.tiling().count(); ++tile) {
+      std::vector<std::uint8_t> expected;
+      map.tiling().for_cells(tile, [&](std::size_t i) { expected.push_back(plain[i]); });
+      ASSERT_EQ(map.tile(tile), expected) << tile;
+    }
+  }
+}
+
 TEST(TeamMap, ReportsWhatChangedAndSharesOnlyItsOwnNews) {
   TeamMap map(kSmall);
   EXPECT_TRUE(map.observe(3, CellState::kFree));

@@ -76,9 +76,10 @@ report::RobotRecord robot_record(const ReplayOptions& o, SlamResult& log, std::s
   robot.trajectory = std::move(log.trajectory);
   robot.clock_s = log.clock_s;
   robot.in_team_frame = log.in_team_map;
-  robot.seen = Grid<std::uint8_t>(geometry);
+  robot.seen = BitGrid(geometry);
   const OccupancyGrid& map = log.map.mapper->states();
-  for (std::size_t i = 0; log.in_team_map && i < map.size(); ++i) robot.seen[i] = map[i] != CellState::kUnknown;
+  for (std::size_t i = 0; log.in_team_map && i < map.size(); ++i)
+    if (map[i] != CellState::kUnknown) robot.seen.insert(i);
   if (!single) robot.map = map;
   return robot;
 }
