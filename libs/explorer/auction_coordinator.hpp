@@ -12,7 +12,7 @@ namespace outrider::explorer {
 using Allocate = std::function<std::vector<Award>(const auction::BidTable&, const auction::Clear&)>;
 
 /// A round asks so many team-mates at most, the nearest to its seller: what a round costs does not grow with the team.
-inline constexpr std::size_t kMostAsked = 8;
+inline constexpr std::size_t kMostAsked = 5;
 
 /// Which tasks a robot bids for.
 using BidFor = std::function<TaskGrain(const Situation&)>;

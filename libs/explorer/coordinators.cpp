@@ -53,7 +53,7 @@ class NearestCoordinator : public Coordinator {
 
 /// What a robot can lose to team-mates: each takes at most one task. Of a large team only the nearest bid against it, and
 /// what others near have is not for sale: some more, for most of the time.
-std::size_t rivals(const Situation& s) { return s.known.size() <= kMostAsked ? s.known.size() : kMostAsked + 3; }
+std::size_t rivals(const Situation& s) { return s.known.size() <= kMostAsked ? s.known.size() : kMostAsked + 2; }
 
 /// How many team-mates may crowd a task, at the worst. A bound for a large team would leave no task out: there a robot bids
 /// for what is best before anybody crowds it.
