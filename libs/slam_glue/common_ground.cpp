@@ -76,7 +76,7 @@ std::vector<std::size_t> frames_around(const KeyframeGraph& graph, std::size_t k
   const Point view = graph.poses[k] * graph.frames[k].view;
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t j = 0; j < graph.size(); ++j) {
-    if (!wanted[graph.frames[j].session]) continue;
+    if (!wanted[graph.frames[j].session] || !graph.frames[j].kept()) continue;
     const double apart = distance(view, graph.poses[j] * graph.frames[j].view);
     if (apart < kReach) near.emplace_back(apart, j);
   }
@@ -91,7 +91,7 @@ CommonGround common_ground(const KeyframeGraph& graph, const std::vector<bool>& 
   CommonGround all;
   Areas areas;
   for (std::size_t k = 0; k < graph.size(); k += 2) {
-    if (!whose[graph.frames[k].session]) continue;
+    if (!whose[graph.frames[k].session] || !graph.frames[k].kept()) continue;
     const auto judges = frames_around(graph, k, by);
     if (judges.empty()) continue;
     const auto points = thinned(graph.frames[k].points, kPointCell);

@@ -161,6 +161,9 @@ void GraphSlam::add_keyframe(Keyframe frame, const Pose2& T_last_frame, const Ei
   way_ = {0.0, 0.0};
   T_keyframe_wheels_ = {};
   if (closer_.look(graph_, k)) closer_.optimise(graph_);
+  // What leaves the local map is kept only where it shows something new: memory grows with the place, not with the log.
+  if (k >= settings_.recent && closer_.shown_before(graph_, k - settings_.recent))
+    graph_.frames[k - settings_.recent].forget();
   rebuild_local_map();
 }
 

@@ -19,6 +19,13 @@ struct Keyframe {
   LaserScan scan;
   std::vector<SurfacePoint> points;  ///< robot frame
   Point view;                        ///< middle of what it sees, robot frame
+
+  /// Where an earlier visit shows the same the scan and its points are let go; the pose stays in the graph.
+  void forget() {
+    std::vector<float>().swap(scan.ranges);
+    std::vector<SurfacePoint>().swap(points);
+  }
+  bool kept() const { return !scan.ranges.empty(); }
 };
 
 /// Makes a keyframe's points and view from its scan.

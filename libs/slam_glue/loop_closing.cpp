@@ -90,7 +90,7 @@ std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std:
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t j = 0; j < graph.size(); ++j) {
     const Keyframe& other = graph.frames[j];
-    if (other_sessions && other.session == frame.session) continue;
+    if (!other.kept() || (other_sessions && other.session == frame.session)) continue;
     if (other.session == frame.session && std::abs(frame.path_m - other.path_m) < settings_.recent_m) continue;
     if (!std::isfinite(drift[j].way_m)) continue;
     const double reach = radius(drift[j]), apart = distance(view, graph.poses[j] * other.view);
@@ -171,6 +171,22 @@ void LoopCloser::accept(KeyframeGraph& graph, const LoopClosure& closure) {
   graph.edges.push_back({closure.from, closure.to, closure.T_from_to, closure.information, true});
   accepted_.push_back(closure);
   accepted_.back().why.clear();
+}
+
+bool LoopCloser::shown_before(const KeyframeGraph& graph, std::size_t k) const {
+  constexpr std::size_t kNear = 3;  // keyframes from k to one that is tied to an earlier visit
+  constexpr double kSameM = 0.5, kSameRad = 0.35;
+  const bool tied = std::any_of(graph.edges.rbegin(), graph.edges.rend(),
+                                [&](const PoseEdge& e) { return e.robust && e.to + kNear >= k && e.to <= k + kNear; });
+  if (!tied) return false;
+  for (std::size_t j = 0; j < k; ++j) {
+    const Keyframe& other = graph.frames[j];
+    if (!other.kept() || graph.frames[k].path_m - other.path_m < settings_.recent_m) continue;
+    if (distance(graph.poses[j].position(), graph.poses[k].position()) < kSameM &&
+        std::abs(wrap_angle(graph.poses[j].theta - graph.poses[k].theta)) < kSameRad)
+      return true;
+  }
+  return false;
 }
 
 void LoopCloser::adopt(const std::vector<LoopClosure>& closures) {

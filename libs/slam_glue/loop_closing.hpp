@@ -51,6 +51,9 @@ class LoopCloser {
   /// Absent when there is nothing like it.
   std::optional<LoopClosure> check(KeyframeGraph& graph, std::size_t j, std::size_t k, const Drift& drift);
 
+  /// Whether keyframe `k` is tied to an earlier visit of which a keyframe is kept that stood where it stands. O(k).
+  bool shown_before(const KeyframeGraph& graph, std::size_t k) const;
+
   /// Adds the closure's edge.
   void accept(KeyframeGraph& graph, const LoopClosure& closure);
 

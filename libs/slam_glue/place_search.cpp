@@ -44,7 +44,7 @@ std::vector<std::size_t> places(const JointGraph& joint, std::size_t s, const Pl
   std::vector<std::size_t> chosen;
   double due = std::min(0.5 * spacing, 0.5 * length);
   for (std::size_t k = joint.begin[s]; k < joint.begin[s + 1]; ++k) {
-    if (joint.graph.frames[k].path_m < due) continue;
+    if (joint.graph.frames[k].path_m < due || !joint.graph.frames[k].kept()) continue;
     chosen.push_back(k);
     due = joint.graph.frames[k].path_m + spacing;
   }

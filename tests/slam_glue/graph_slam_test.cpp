@@ -64,6 +64,36 @@ TEST(GraphSlam, FindsItsWayBackAfterAGap) {
   }
 }
 
+/// Lap after lap round the same ring the scans that are kept stay about as many.
+TEST(GraphSlam, MemoryGrowsWithThePlaceNotWithTheLog) {
+  const auto world = test::ring_world();
+  const auto trip = test::round_trip();
+  const auto lap = std::find_if(trip.begin(), trip.end(),
+                                [](const Pose2& p) { return distance(p.position(), {19.0, 1.0}) < 1e-6; });
+  std::vector<Pose2> truth = trip;
+  for (int more = 0; more < 3; ++more) truth.insert(truth.end(), lap, trip.end());
+  std::mt19937 random(3);
+  const auto scans = test::scans_along(world, truth, 181, kPi, random);
+  const auto odometry = test::slipping_odometry(truth, 0.03, 0.03, 0.0, random);
+  GraphSlam slam{GraphSettings{}};
+  std::size_t once = 0;
+  const auto kept = [&] {
+    return static_cast<std::size_t>(std::count_if(slam.graph().frames.begin(), slam.graph().frames.end(),
+                                                  [](const Keyframe& f) { return f.kept(); }));
+  };
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    slam.add(scans[i], odometry[i]);
+    if (i + 1 == trip.size()) once = kept();
+  }
+  slam.finish();
+  EXPECT_LT(kept(), once + once / 4);
+  const std::vector<Pose2> poses = slam.poses();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    worst = std::max(worst, distance((truth[0] * inverse(poses[0]) * poses[i]).position(), truth[i].position()));
+  EXPECT_LT(worst, 0.3);
+}
+
 TEST(GraphSlam, RangesWithFiveCentimetresOfNoise) {
   const auto world = test::ring_world();
   const auto truth = test::round_trip();
