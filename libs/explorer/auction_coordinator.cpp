@@ -1,6 +1,7 @@
 #include "explorer/auction_coordinator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -15,6 +16,7 @@ constexpr double kCallAgain = 0.3;      // [s] between its calls
 constexpr double kAwardTimeout = 2.0;   // [s] that a bidder waits for awards
 constexpr double kAwardsAgain = 0.6;    // [s] between two broadcasts of awards; more than a status period
 constexpr double kRetry = 1.0;          // [s] between rounds opened by a robot that went away empty-handed
+constexpr int kMostPatient = 4;         // times that such a robot of a large team waits twice as long as before
 constexpr double kStagger = 0.25;       // [s] between the robots that could sell a silent one's task
 constexpr double kLetGo = 0.8;          // [s] that a robot shares a frontier before it gives way: a round and some
 
@@ -158,9 +160,11 @@ class AuctionCoordinator : public Coordinator {
     if (mine == awards.awards.end()) {
       decision.verdict = Decision::Verdict::kIdle;
       decision.task.reset();
-      retry_at_s_ = s.now_s + kRetry;
+      empty_handed_ = s.team.size() > kMostAsked ? std::min(empty_handed_ + 1, kMostPatient) : 0;
+      retry_at_s_ = s.now_s + std::ldexp(kRetry, empty_handed_);
       return;
     }
+    empty_handed_ = 0;
     decision.verdict = Decision::Verdict::kGo;
     decision.task = Task{mine->task, mine->stand};
     decision.value = mine->value;
@@ -241,6 +245,7 @@ class AuctionCoordinator : public Coordinator {
   double awarded_s_ = -1e9;                  // when awards last came in
   double shared_since_s_ = 0.0;              // a team-mate has this robot's frontier since [s]
   double retry_at_s_ = 0.0;
+  int empty_handed_ = 0;                     // rounds in a row without an award
 };
 
 }  // namespace

@@ -109,14 +109,17 @@ Sources sources_of(const World& world, const Walls& widest) {
   return sources;
 }
 
-/// The nearest place, by way of free space, to source `only` (to any, if there is no such) with room for a disc.
+/// The nearest place, by way of free space, to source `only` (to any, if there is no such) with room for a disc. Cells that
+/// are too near to somebody are so for good: `taken` keeps them for the next disc of this radius.
 std::optional<Pose2> nearest_place(const Sources& sources, std::size_t only, const Walls& walls, const GridGeometry& g,
-                                   const std::vector<Placed>& placed) {
+                                   const std::vector<Placed>& placed, std::vector<bool>& taken) {
   const bool any = only >= sources.cells.size();
   std::optional<Pose2> pose;
   spread(walls, g, any ? sources.cells : std::vector<Cell>{sources.cells[only]}, [&](Cell c, std::size_t source) {
+    if (taken[g.index(c)]) return true;
     const Point p = g.center(c);
     if (apart(placed, p, walls.radius(), kSpare)) pose = Pose2{p.x, p.y, sources.poses[any ? source : only].theta};
+    else taken[g.index(c)] = true;
     return !pose;
   });
   return pose;
@@ -131,6 +134,8 @@ std::vector<Pose2> spread_starts(const World& world, std::span<const double> rad
   const Sources sources = sources_of(world, walls.rbegin()->second);
 
   std::vector<Placed> placed;
+  std::map<double, std::vector<bool>> taken;  // by radius
+  for (const auto& [radius, of_radius] : walls) taken[radius].assign(world.map.size(), false);
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const Walls& body_walls = walls.at(radii[i]);
     std::optional<Pose2> pose;
@@ -141,7 +146,7 @@ std::vector<Pose2> spread_starts(const World& world, std::span<const double> rad
                                      i + 1, start.x, start.y, radii[i]));
       if (apart(placed, start.position(), radii[i], 0.0)) pose = start;
     }
-    if (!pose) pose = nearest_place(sources, i, body_walls, world.map.geometry(), placed);
+    if (!pose) pose = nearest_place(sources, i, body_walls, world.map.geometry(), placed, taken.at(radii[i]));
     if (!pose)
       throw InputError(fmt::format("no room for robot {} of {} (radius {:g} m) near the start poses", i + 1,
                                    radii.size(), radii[i]));
