@@ -82,7 +82,7 @@ const kPercent = { most: 1, tick: (v) => Math.round(100 * v) + " %", tip: (v) =>
 
 /**
  * Curves over time. series: [{label, t, y, tone (a CSS variable), width, dash}]; onSeek(time) is called on a click.
- * unit: {most: the axis goes at least there, tick(value), tip(value): labels}
+ * unit: {most: the axis goes at least there, cap: and not beyond this, if set, tick(value), tip(value): labels}
  */
 function curveChart(canvas, series, yTitle, onSeek, unit = kPercent) {
   const cursor = {
@@ -123,7 +123,7 @@ function curveChart(canvas, series, yTitle, onSeek, unit = kPercent) {
       onClick: (event, _, c) => onSeek && onSeek(c.scales.x.getValueForPixel(event.x)),
       scales: {
         x: axis("time [s]", { type: "linear", min: 0, max: last || 1, grid: { display: false }, ticks: { includeBounds: false } }),
-        y: axis(yTitle, { min: 0, suggestedMax: unit.most, ticks: { callback: unit.tick } }),
+        y: axis(yTitle, { min: 0, suggestedMax: unit.most, max: unit.cap, ticks: { callback: unit.tick } }),
       },
       plugins: {
         legend: { display: series.length > 1, align: "end", labels: { boxWidth: 18, boxHeight: 0, padding: 12 } },

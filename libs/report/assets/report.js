@@ -124,6 +124,14 @@ class EventTable {
   }
 }
 
+/** The top of an axis for curves that begin with a peak, which would flatten all the rest; undefined when there is none. */
+function topWithoutPeak(series) {
+  const begin = 0.1 * Math.max(...series.map((s) => s.t[s.t.length - 1]));
+  const highest = Math.max(...series.flatMap((s) => s.y));
+  const later = Math.max(...series.flatMap((s) => s.y.filter((_, i) => s.t[i] > begin)));
+  return later > 0 && highest > 2 * later ? +(1.1 * later).toPrecision(2) : undefined;
+}
+
 function drawCharts(data, seek) {
   const names = data.robots.map((r) => r.name);
   const tones = names.map((_, i) => toneOf(i));
@@ -142,7 +150,7 @@ function drawCharts(data, seek) {
     label: name, t: data.rates[name].t, y: data.rates[name].a, tone: tones[i], width: 1.4, dash: dashOf(i),
   }] : []) : [];
   const rate = rates.length ? curveChart(byId("rates"), rates, "explored per second", seek,
-    { most: 0, tick: (v) => `${+v.toFixed(2)} m²/s`, tip: (v) => `${v.toFixed(2)} m²/s` }) : { setTime() {} };
+    { most: 0, cap: topWithoutPeak(rates), tick: (v) => `${+v.toFixed(2)} m²/s`, tip: (v) => `${v.toFixed(2)} m²/s` }) : { setTime() {} };
   const percent = (digits) => (v) => `${(100 * v).toFixed(digits)} %`;
   const bars = (id, values, unit, tick) => {
     const shown = values && names.length > 1;  // one robot: the table says it all
