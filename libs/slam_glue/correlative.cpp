@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace outrider::slam_glue {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 constexpr double kLeastBlur = 0.08;   // standard deviation of the nearness [m]; at least a cell
 constexpr double kLeastTurn = 0.005;  // finest step in heading [rad]
 constexpr double kMostTurn = 0.03;
-constexpr double kDoubt = 0.01;       // of the score, per squared standard deviation from the centre
+constexpr double kDoubt = 0.01;  // of the score, per squared standard deviation from the centre
 
 struct CellOffset {
   int x, y;
@@ -32,34 +33,48 @@ CorrelativeMatcher::CorrelativeMatcher(std::span<const SurfacePoint> map, double
   height_ = static_cast<int>((high.y - origin_.y) / resolution_) + reach + 2;
   Level base{1, std::vector<std::uint8_t>(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0),
              width_, height_};
+  // Squared distances first: one exponential a cell instead of one a point and cell.
+  const double cells_a_blur = resolution_ / blur;
+  constexpr float kFar = std::numeric_limits<float>::max();
+  std::vector<float> squared(base.values.size(), kFar);
   for (const auto& q : map) {
     const double fx = (q.p.x - origin_.x) / resolution_, fy = (q.p.y - origin_.y) / resolution_;
     const int cx = static_cast<int>(fx), cy = static_cast<int>(fy);
-    for (int y = cy - reach; y <= cy + reach; ++y)
+    for (int y = cy - reach; y <= cy + reach; ++y) {
+      float* row = &squared[static_cast<std::size_t>(y * width_)];
+      const double dy = y + 0.5 - fy;
       for (int x = cx - reach; x <= cx + reach; ++x) {
-        const double d = resolution_ * std::hypot(x + 0.5 - fx, y + 0.5 - fy) / blur;
-        auto& cell = base.values[static_cast<std::size_t>(y * width_ + x)];
-        cell = std::max(cell, static_cast<std::uint8_t>(255.0 * std::exp(-0.5 * d * d)));
+        const double dx = x + 0.5 - fx;
+        row[x] = std::min(row[x], static_cast<float>(dx * dx + dy * dy));
       }
+    }
   }
+  for (std::size_t i = 0; i < squared.size(); ++i)
+    if (squared[i] < kFar)
+      base.values[i] = static_cast<std::uint8_t>(
+          255.0 * std::exp(-0.5 * cells_a_blur * cells_a_blur * static_cast<double>(squared[i])));
   levels_.push_back(std::move(base));
-  for (int h = 1; h < levels; ++h) {
-    // Maxima over 2^h cells from maxima over 2^(h-1) cells, taken twice.
-    const Level& below = levels_.back();
-    Level level{2 * below.span, {}, below.width + below.span, below.height + below.span};
-    level.values.assign(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height), 0);
-    const auto look = [&](int x, int y) -> std::uint8_t {
-      return x < 0 || y < 0 || x >= below.width || y >= below.height
-                 ? std::uint8_t{0}
-                 : below.values[static_cast<std::size_t>(y * below.width + x)];
-    };
-    const int s = below.span;
-    for (int y = 0; y < level.height; ++y)
-      for (int x = 0; x < level.width; ++x)
-        level.values[static_cast<std::size_t>(y * level.width + x)] =
-            std::max(std::max(look(x, y), look(x - s, y)), std::max(look(x, y - s), look(x - s, y - s)));
-    levels_.push_back(std::move(level));
+  while (static_cast<int>(levels_.size()) < levels) levels_.push_back(maxima_above(levels_.back()));
+}
+
+/// Maxima over twice the span: of two neighbours in x, then of two in y.
+CorrelativeMatcher::Level CorrelativeMatcher::maxima_above(const Level& below) {
+  Level level{2 * below.span, {}, below.width + below.span, below.height + below.span};
+  const auto span = static_cast<std::size_t>(below.span), width = static_cast<std::size_t>(level.width);
+  const auto below_width = static_cast<std::size_t>(below.width), below_height = static_cast<std::size_t>(below.height);
+  level.values.assign(width * static_cast<std::size_t>(level.height), 0);
+  std::vector<std::uint8_t> row(width);
+  for (std::size_t y = 0; y < below_height; ++y) {
+    const std::uint8_t* from = &below.values[y * below_width];
+    std::fill(row.begin(), row.end(), std::uint8_t{0});
+    std::copy(from, from + below_width, row.begin());
+    for (std::size_t x = 0; x < below_width; ++x) row[x + span] = std::max(row[x + span], from[x]);
+    for (const std::size_t to : {y, y + span}) {
+      std::uint8_t* out = &level.values[to * width];
+      for (std::size_t x = 0; x < width; ++x) out[x] = std::max(out[x], row[x]);
+    }
   }
+  return level;
 }
 
 /// One search: the scan turned to every heading, and the best pose so far.
@@ -144,8 +159,9 @@ std::optional<SearchHit> CorrelativeMatcher::best(std::span<const SurfacePoint> 
   const double step = std::clamp(resolution_ / far, kLeastTurn, kMostTurn);
   const auto turns = static_cast<int>(std::ceil(window.turn_rad / step));
   const double perfect = 255.0 * static_cast<double>(scan.size());
-  Search search{*this, window, excluded, static_cast<int>(std::ceil(window.shift_m / resolution_)), {}, {},
-                perfect, static_cast<long>(least_score * perfect), std::nullopt};
+  Search search{*this,       window, excluded, static_cast<int>(std::ceil(window.shift_m / resolution_)),
+                {},          {},     perfect,  static_cast<long>(least_score * perfect),
+                std::nullopt};
   std::vector<Search::Block> blocks;
   const Level& top = levels_.back();
   for (int k = -turns; k <= turns; ++k) {

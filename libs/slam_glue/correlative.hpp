@@ -44,6 +44,7 @@ class CorrelativeMatcher {
     int width = 0, height = 0;
   };
   struct Search;
+  static Level maxima_above(const Level& below);
 
   double resolution_ = 0.05;
   Point origin_;
