@@ -93,11 +93,13 @@ std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std:
     if (!other.kept() || (other_sessions && other.session == frame.session)) continue;
     if (other.session == frame.session && std::abs(frame.path_m - other.path_m) < settings_.recent_m) continue;
     if (!std::isfinite(drift[j].way_m)) continue;
-    const double reach = radius(drift[j]), apart = distance(view, graph.poses[j] * other.view);
-    if (reach > kVagueM && k % kVagueEvery != 0) continue;
+    const bool widely = k % kVagueEvery == 0 || radius(drift[j]) < kVagueM;
+    const double reach = radius(widely ? drift[j] : Drift{drift[j].way_m});
+    const double apart = distance(view, graph.poses[j] * other.view);
     if (apart - reach > settings_.view_m) continue;
     // Where poses are vague all are near; the nearest are still the likeliest.
-    near.emplace_back(std::max(0.0, apart - reach) + 0.1 * reach + 0.01 * apart, j);
+    near.emplace_back(std::max(0.0, apart - reach) + 0.1 * reach + (drift[j].blind.isZero(0.0) ? 0.0 : 0.01 * apart),
+                      j);
   }
   std::sort(near.begin(), near.end());
   std::vector<std::size_t> chosen;
@@ -197,7 +199,12 @@ bool LoopCloser::look(KeyframeGraph& graph, std::size_t k, bool other_sessions) 
   const std::vector<Drift> drift = drift_from(graph, k);
   bool news = false;
   for (const std::size_t j : candidates(graph, k, drift, other_sessions)) {
-    const auto closure = check(graph, j, k, drift[j]);
+    // Dead reckoning is often better than feared, and a wide search finds more that looks alike: the near one comes
+    // first.
+    auto closure = check(graph, j, k, {drift[j].way_m});
+    const bool widely = !drift[j].blind.isZero(0.0) && (k % kVagueEvery == 0 || radius(drift[j]) < kVagueM);
+    if (widely && (!closure || !closure->accepted()))
+      if (auto other = check(graph, j, k, drift[j])) closure = std::move(other);
     if (!closure) continue;
     if (closure->accepted()) {
       accept(graph, *closure);

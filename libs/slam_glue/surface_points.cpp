@@ -11,6 +11,7 @@ constexpr int kNeighbours = 6;          // on either side, along the sweep
 constexpr double kSurfaceReach = 0.12;  // neighbours on the same surface are nearer than this plus a few beams [m]
 constexpr int kMostNeighbours = 20;     // and on the second try, over a longer stretch
 constexpr double kLongReach = 0.3;
+constexpr double kNoisy = 0.4;  // a smaller share of points on straight stretches is noise
 constexpr double kFlat = 0.15;  // a line's smaller standard deviation is below this share of its larger
 
 struct Echo {
@@ -57,16 +58,25 @@ std::vector<SurfacePoint> surface_points(const LaserScan& scan, double max_range
     if (!scan.valid(b) || r > max_range_m) continue;
     echoes.push_back({b, r, scan.T_robot_sensor * Point{r * std::cos(a), r * std::sin(a)}});
   }
+  const Point sensor = scan.T_robot_sensor.position();
+  const auto normals_of = [&](const Echo& echo, std::size_t i, double reach, int most) {
+    return normal_at(echoes, i, sensor, reach + 3.0 * echo.range * std::abs(scan.angle_increment), most);
+  };
   std::vector<SurfacePoint> points;
+  std::vector<std::size_t> chosen;
+  std::size_t flat = 0;
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (!points.empty() && distance(points.back().p, echoes[i].p) < spacing_m) continue;
-    const Point sensor = scan.T_robot_sensor.position();
-    const double spacing = 3.0 * echoes[i].range * std::abs(scan.angle_increment);
-    Point normal = normal_at(echoes, i, sensor, kSurfaceReach + spacing, kNeighbours);
-    // Noise bends short stretches: a longer one may still be straight.
-    if (normal == Point{}) normal = normal_at(echoes, i, sensor, kLongReach + spacing, kMostNeighbours);
-    points.push_back({echoes[i].p, normal});
+    points.push_back({echoes[i].p, normals_of(echoes[i], i, kSurfaceReach, kNeighbours)});
+    chosen.push_back(i);
+    flat += points.back().has_normal();
   }
+  // Noise bends short stretches: where it bends most of them, longer ones are tried. Elsewhere these would only give
+  // clutter a direction.
+  if (static_cast<double>(flat) < kNoisy * static_cast<double>(points.size()))
+    for (std::size_t n = 0; n < points.size(); ++n)
+      if (!points[n].has_normal())
+        points[n].normal = normals_of(echoes[chosen[n]], chosen[n], kLongReach, kMostNeighbours);
   return points;
 }
 
