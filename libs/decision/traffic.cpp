@@ -90,18 +90,27 @@ std::vector<Cell> Traffic::nearest_clear(Cell from) {
 }
 
 std::optional<Traffic::Room> Traffic::make_room(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
-                                                std::span<const Neighbour> neighbours) {
+                                                std::span<const Neighbour> neighbours, std::optional<Cell> goal) {
+  look_at(passable, from, kSearchRadius);
+  on_way_ = Grid<std::uint8_t>(mask_.geometry());
+  const double gap = radius_ + asker.radius;
+  const Point end = mark_way(asker.position, asker.way, gap);
+  if (goal && asker.stays && !asker.way.empty() && mask_.contains(in_window(*goal))) {
+    const Grid<std::uint8_t> on_way = on_way_;
+    near_segment(end, end, gap, [&](Cell c) { mask_[c] = 0; });
+    const Cell source[] = {in_window(*goal)};
+    field_.compute(mask_, source);
+    for (std::size_t i = 0; i < on_way_.size(); ++i) on_way_[i] |= !field_.reached(mask_.geometry().cell_at(i));
+    if (auto room = room_beside(passable, from, asker, neighbours)) return room;
+    on_way_ = on_way;
+  }
+  return room_beside(passable, from, asker, neighbours);
+}
+
+std::optional<Traffic::Room> Traffic::room_beside(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
+                                                  std::span<const Neighbour> neighbours) {
   look_at(passable, from, kSearchRadius);
   const Cell begin = in_window(from);
-  on_way_ = Grid<std::uint8_t>(mask_.geometry());
-  Point a = asker.position;
-  const double need = radius_ + asker.radius;
-  near_segment(a, a, need, [&](Cell c) { on_way_[c] = 1; });
-  for (const Cell next : asker.way) {
-    const Point b = geometry_.center(next);
-    near_segment(a, b, need, [&](Cell c) { on_way_[c] = 1; });
-    a = b;
-  }
   block(neighbours, std::nullopt);
   if (auto path = on_map(nearest_clear(begin)); !path.empty()) return Room{std::move(path), std::nullopt, false};
   look_at(passable, from, kSearchRadius);
@@ -111,9 +120,60 @@ std::optional<Traffic::Room> Traffic::make_room(const Grid<std::uint8_t>& passab
     const Neighbour* first = in_the_way(path, neighbours, kSearchRadius);
     return Room{std::move(path), first ? std::optional(first->robot) : std::nullopt, false};
   }
-  look_at(passable, from, kSearchRadius);
-  if (auto path = on_map(nearest_clear(begin)); !path.empty()) return Room{std::move(path), asker.robot, true};
+  // The asker has to leave the way out to us first, and then come back: it needs a way to do so that we do not block.
+  const Grid<std::uint8_t> on_way = on_way_;
+  mark_way_back(passable, from, asker);
+  for (const bool with_way_back : {true, false}) {
+    if (!with_way_back) on_way_ = on_way;
+    look_at(passable, from, kSearchRadius);
+    if (auto path = on_map(nearest_clear(begin)); !path.empty()) return Room{std::move(path), asker.robot, true};
+  }
   return std::nullopt;
+}
+
+/// Marks the way to `asker` from the farthest place that it could back to.
+void Traffic::mark_way_back(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker) {
+  look_at(passable, from, kSearchRadius);
+  const Point at = geometry_.center(from);
+  near_segment(at, at, radius_ + asker.radius, [&](Cell c) { mask_[c] = 0; });
+  const Cell source[] = {in_window(geometry_.cell_of(asker.position))};
+  if (!mask_.contains(source[0])) return;
+  mask_[source[0]] = 1;
+  field_.compute(mask_, source, kSearchRadius);
+  Cell farthest = source[0];
+  for (std::size_t i = 0; i < mask_.size(); ++i) {
+    const Cell c = mask_.geometry().cell_at(i);
+    if (field_.reached(c) && field_.metres(c) > field_.metres(farthest)) farthest = c;
+  }
+  std::vector<Cell> way = on_map(field_.path(farthest));
+  std::reverse(way.begin(), way.end());
+  mark_way(asker.position, way, radius_ + asker.radius);
+}
+
+/// Marks where this robot would be closer than `gap` [m] to somebody on the way. Returns the end of the way.
+Point Traffic::mark_way(Point from, std::span<const Cell> way, double gap) {
+  near_segment(from, from, gap, [&](Cell c) { on_way_[c] = 1; });
+  for (const Cell next : way) {
+    const Point to = geometry_.center(next);
+    near_segment(from, to, gap, [&](Cell c) { on_way_[c] = 1; });
+    from = to;
+  }
+  return from;
+}
+
+std::vector<Cell> Traffic::stroll(const Grid<std::uint8_t>& passable, Cell from, std::span<const Neighbour> neighbours,
+                                  double reach, std::size_t lot) {
+  look_at(passable, from, reach);
+  block(neighbours, std::nullopt);
+  const Cell source[] = {in_window(from)};
+  mask_[source[0]] = 1;
+  field_.compute(mask_, source, reach);
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < mask_.size(); ++i)
+    if (field_.reached(mask_.geometry().cell_at(i))) cells.push_back(mask_.geometry().cell_at(i));
+  std::vector<Cell> path = field_.path(cells[lot % cells.size()]);
+  std::reverse(path.begin(), path.end());
+  return on_map(std::move(path));
 }
 
 const Neighbour* Traffic::in_the_way(std::span<const Cell> way, std::span<const Neighbour> neighbours,

@@ -20,6 +20,7 @@ struct Neighbour {
   int priority = 0;              ///< lower goes first
   std::optional<RobotId> asks;   ///< whom it asks to make room
   bool heard = false;            ///< recently: way, priority and question are its own; else they are guesses
+  bool stays = false;            ///< at the end of its way
 };
 
 /// Shortest paths that keep clear of standing team-mates, and places to make room. Owns its workspace.
@@ -40,8 +41,15 @@ class Traffic {
   /// The nearest place where `asker` can pass on its way without touching this robot. Tries, in this order: around
   /// everybody; through others (who are asked in turn); past the asker itself. Nothing when no such place exists within
   /// 30 m.
+  /// If the asker stays where its way ends, places from which there is a way around it to `goal` (where this robot wants
+  /// to be in the end) come before all others.
   std::optional<Room> make_room(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
-                                std::span<const Neighbour> neighbours);
+                                std::span<const Neighbour> neighbours, std::optional<Cell> goal = std::nullopt);
+
+  /// A path to one of the cells within `reach` [m] that can be reached around everybody, the `lot`-th (modulo their number)
+  /// by row, then column; `from` itself is one of them.
+  std::vector<Cell> stroll(const Grid<std::uint8_t>& passable, Cell from, std::span<const Neighbour> neighbours,
+                           double reach, std::size_t lot);
 
   /// The neighbour that the way runs into first, within `horizon` [m] of the path's beginning.
   const Neighbour* in_the_way(std::span<const Cell> way, std::span<const Neighbour> neighbours, double horizon) const;
@@ -53,7 +61,11 @@ class Traffic {
   void near_segment(Point a, Point b, double r, Visit&& visit) const;
   Cell in_window(Cell c) const { return {c.x - low_.x, c.y - low_.y}; }
   std::vector<Cell> on_map(std::vector<Cell> path) const;
+  Point mark_way(Point from, std::span<const Cell> way, double gap);
+  void mark_way_back(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker);
   std::vector<Cell> nearest_clear(Cell from);
+  std::optional<Room> room_beside(const Grid<std::uint8_t>& passable, Cell from, const Neighbour& asker,
+                                  std::span<const Neighbour> neighbours);
 
   GridGeometry geometry_;
   double radius_;

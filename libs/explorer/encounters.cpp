@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "explorer/explorer.hpp"
 
@@ -13,7 +14,9 @@ constexpr double kStuck = 3.0;           // [s] blocked before detours are given
 constexpr double kTryAgain = 0.5;        // [s] between attempts
 constexpr double kGiveUp = 15.0;         // [s] blocked before the task is given back
 constexpr double kDeferred = 20.0;       // [s] until a task that was blocked is tried again
-constexpr int kMostRetreats = 4;         // from the silent, for one task
+constexpr int kTieBreak = 4;             // every so many attempts to let the silent pass are left to chance
+constexpr double kMoved = 0.01;          // [m] somebody who moved farther than this is alive
+constexpr double kStroll = 3.0;          // [m] the first time; farther every time after that
 constexpr int kMostBlocked = 3;          // times that a task is given back before it is given up
 constexpr double kRoomTimeout = 8.0;     // [s] that room is made for somebody, beside the way there
 constexpr double kMostWait = 6.0;        // [s] that a close team-mate is waited for
@@ -23,10 +26,10 @@ constexpr double kLookAhead = 0.5;       // [m] on the way to where a robot is h
 constexpr double kWorthDetour = 4.0;     // [m] a detour may always cost this much
 constexpr double kRejoin = 20.0;         // [m] a detour comes back to the way after no more than this of it
 constexpr double kNearby = 10.0;         // [m] team-mates farther away do not matter
-constexpr double kTouching = 0.05;       // [m] between bodies
+constexpr double kTouching = 0.01;       // [m] between bodies
 constexpr double kStraightOn = 5.0;      // [m]
-constexpr int kMostAside = 8;            // times that a robot with nothing to do steps aside for the silent
-constexpr int kIdlePriority = 1000;
+constexpr int kMostAside = 16;           // times that a robot with nothing to do steps aside for the silent
+constexpr int kIdlePriority = 1000;      // robots without a task make room for those that have one
 
 double length(const std::vector<Cell>& way, double resolution) {
   double cells = 0.0;
@@ -36,7 +39,9 @@ double length(const std::vector<Cell>& way, double resolution) {
 
 }  // namespace
 
-int Explorer::base_priority() const {
+/// Lower goes first. Who makes room for somebody goes as that one would.
+int Explorer::priority() const {
+  if (lent_priority_) return *lent_priority_;
   return task_ || phase_ == Phase::kReturning ? self_ : kIdlePriority + self_;
 }
 
@@ -54,6 +59,7 @@ std::vector<decision::Neighbour> Explorer::neighbours(double now_s) const {
       n.priority = mate->status.priority;
       n.asks = mate->status.asks;
       n.heard = true;
+      n.stays = mate->status.done && n.priority == n.robot;  // on its way home, not out of somebody's way
     }
     result.push_back(std::move(n));
   }
@@ -62,38 +68,72 @@ std::vector<decision::Neighbour> Explorer::neighbours(double now_s) const {
 
 /// Drives to where `asker` can pass; false when there is no such place.
 bool Explorer::make_room(const decision::Neighbour& asker, std::span<const decision::Neighbour> around, double now_s) {
-  const auto room = traffic_.make_room(passable_.mask(), base(), asker, around);
+  const auto room = traffic_.make_room(passable_.mask(), base(), asker, around, destination());
   if (!room || (room->through_asker && !asker.heard && task_)) return false;
-  const double drive_s = length(room->path, map_.states().geometry().resolution) / spec_.speed;
+  const double resolution = map_.states().geometry().resolution;
+  const double told_m = asker.heard ? length(asker.way, resolution) : 0.0;
+  const double drive_s = (length(room->path, resolution) + told_m) / spec_.speed;
   making_room_for_ = asker.robot;
   room_is_for_silent_ = !asker.heard;
-  making_room_until_s_ = now_s + kRoomTimeout + (room_is_for_silent_ ? 2.0 : 1.0) * drive_s;
-  if (asker.heard) priority_ = room->through_asker ? asker.priority - 1 : asker.priority;
+  making_room_until_s_ = now_s + (task_ || !asker.heard ? 1.0 : 3.0) * kRoomTimeout +
+                         (room_is_for_silent_ || room->through_asker ? 2.0 : 1.0) * drive_s;
+  lent_priority_.reset();
+  if (asker.heard) lent_priority_ = room->through_asker ? asker.priority - 1 : asker.priority;
   asks_ = room->ask;
   sink_(now_s, PhaseEvent{self_, "making room"});
   drive(room->path);
   return true;
 }
 
+/// Where this robot wants to be in the end: at its task, or at home.
+std::optional<Cell> Explorer::destination() const {
+  if (task_) return task_->stand;
+  if (settings_.return_home) return map_.states().geometry().cell_of(spec_.start.position());
+  return std::nullopt;
+}
+
+/// The straight way on would run into somebody who is still on its own.
+bool Explorer::would_meet(const Teammate& mate) {
+  const auto goal = destination();
+  if (!goal) return false;
+  const decision::Neighbour there[] = {{mate.robot, mate.status.pose.position(), mate.status.radius, {}, 0, {}}};
+  const std::vector<Cell> path = board_.path_to(base(), *goal);
+  if (traffic_.in_the_way(path, there, kNearby) != nullptr) return true;
+  const auto& g = map_.states().geometry();
+  return std::any_of(mate.status.way.begin(), mate.status.way.end(), [&](Cell c) {
+    const decision::Neighbour then[] = {{mate.robot, g.center(c), mate.status.radius, {}, 0, {}}};
+    return traffic_.in_the_way(path, then, kNearby) != nullptr;
+  });
+}
+
+/// The other has not passed yet. Who has nothing to explore also waits until both ways are clear of each other.
+bool Explorer::room_is_needed(double now_s) {
+  if (now_s >= making_room_until_s_) return false;
+  if (room_is_for_silent_) return true;
+  const auto asker = std::find_if(team_.begin(), team_.end(), [&](const Teammate& t) { return t.robot == *making_room_for_; });
+  if (asker == team_.end() || now_s > asker->heard_s + settings_.silent_after) return false;
+  if (asker->status.asks == self_ || (!asker->status.way.empty() && !arrived_)) return true;
+  if (task_ || asker->status.way.size() < 2) return false;
+  if (now_s < last_try_s_ + kTryAgain) return true;
+  last_try_s_ = now_s;
+  return would_meet(*asker);
+}
+
 /// Goes on with what was to be done once the other has passed, or time is up.
-void Explorer::keep_making_room(std::span<const decision::Neighbour> around, double now_s) {
-  const auto asker = std::find_if(around.begin(), around.end(),
-                                  [&](const auto& n) { return n.robot == *making_room_for_; });
-  const bool still_asks = room_is_for_silent_ || (asker != around.end() &&
-                                                  (asker->asks == self_ || (!asker->way.empty() && !arrived_)));
-  if (still_asks && now_s < making_room_until_s_) return;
+void Explorer::keep_making_room(double now_s) {
+  if (room_is_needed(now_s)) {
+    if (arrived_ && asks_) asks_.reset(), status_news_ = true;
+    return;
+  }
   making_room_for_.reset();
+  lent_priority_.reset();
   asks_.reset();
-  priority_ = base_priority();
   blocked_since_s_ = -1.0;
   status_news_ = true;
   if (task_ && !plan(task_->stand)) {
     end_task("no way", now_s);
   } else if (!task_) {
-    if (phase_ == Phase::kDone && settings_.return_home && !stranded_) {
-      phase_ = Phase::kReturning;
-      deadline_s_ = now_s + 2.0 * patience();
-    }
+    if (phase_ == Phase::kDone && settings_.return_home && !stranded_) phase_ = Phase::kReturning;
     if (phase_ == Phase::kReturning) arrived_ = true;  // go_home() plans again
     else stop();
   }
@@ -102,9 +142,9 @@ void Explorer::keep_making_room(std::span<const decision::Neighbour> around, dou
 /// Makes room for a team-mate that asks for it and goes first.
 void Explorer::give_way(double now_s) {
   const auto around = neighbours(now_s);
-  if (making_room_for_) return keep_making_room(around, now_s);
+  if (making_room_for_) return keep_making_room(now_s);
   for (const auto& n : around)
-    if (n.asks == self_ && n.priority < priority_ && make_room(n, around, now_s)) return;
+    if (n.asks == self_ && n.priority < priority() && make_room(n, around, now_s)) return;
   step_aside(around, now_s);
 }
 
@@ -122,7 +162,7 @@ void Explorer::step_aside(std::span<const decision::Neighbour> around, double no
   }
   if (now_s < touched_since_s_ + kStuck || stood_aside_ >= kMostAside) return;
   touched_since_s_ = now_s;
-  ++stood_aside_;
+  if (++stood_aside_ % kTieBreak == 0) return stroll(*mate, around, now_s);
   decision::Neighbour guess = *mate;
   guess.way = straight_on(mate->position);
   make_room(guess, around, now_s);
@@ -146,11 +186,31 @@ std::vector<Cell> Explorer::straight_on(Point from) const {
 /// want. The robot with the higher number tries first; the other follows when that does not help.
 void Explorer::retreat_from(const decision::Neighbour& silent, std::span<const decision::Neighbour> around, double now_s) {
   if (now_s < blocked_since_s_ + kStuck + (self_ < silent.robot ? kRoomTimeout : 0.0)) return;
-  if (retreats_ >= kMostRetreats) return;  // it may be dead
-  ++retreats_;
+  if (!has_moved(silent)) return;  // it may be dead
+  if (++retreats_ % kTieBreak == 0) return stroll(silent, around, now_s);
   decision::Neighbour guess = silent;
   guess.way.assign(trail_.rbegin(), trail_.rend());
   make_room(guess, around, now_s);
+}
+
+/// Since it was last in the way, or it never was.
+bool Explorer::has_moved(const decision::Neighbour& mate) {
+  const auto [before, first] = blocked_at_.try_emplace(mate.robot, mate.position);
+  return first || distance(std::exchange(before->second, mate.position), mate.position) > kMoved;
+}
+
+/// Leaves the scene for a while, no matter where to: whoever cannot sort it out with `mate` has to break the tie.
+void Explorer::stroll(const decision::Neighbour& mate, std::span<const decision::Neighbour> around, double now_s) {
+  const double reach = kStroll * (1 + retreats_ + stood_aside_);
+  std::vector<Cell> path = traffic_.stroll(passable_.mask(), base(), around, reach, luck_());
+  const double drive_s = length(path, map_.states().geometry().resolution) / spec_.speed;
+  making_room_for_ = mate.robot;
+  room_is_for_silent_ = true;
+  making_room_until_s_ = now_s + 2.0 * drive_s + static_cast<double>(luck_() % 16);
+  lent_priority_.reset();
+  asks_.reset();
+  sink_(now_s, PhaseEvent{self_, "making room"});
+  drive(std::move(path));
 }
 
 /// What the joint policy tells us to do about somebody; kGo when it does not apply.
@@ -167,7 +227,7 @@ decision::LocalAction Explorer::local_action(const decision::Neighbour& mate) co
   };
   const auto how = decision::encounter(at, heading(way_, at), mate.position, heading(mate.way, mate.position));
   const bool emergency = apart < std::max(settings_.local.emergency, touching);
-  const bool first = std::pair(priority_, self_) < std::pair(mate.priority, mate.robot);
+  const bool first = std::pair(priority(), self_) < std::pair(mate.priority, mate.robot);
   return local_.action(how, emergency, first);
 }
 
@@ -198,13 +258,26 @@ void Explorer::coordinate_locally(double now_s) {
   }
 }
 
-/// Somebody else may get through to the task, or this robot later; after some attempts it is given up.
+/// Somebody else may get through to the task, or this robot later; in the end it is given up, unless whoever blocks the
+/// way moves in between.
 void Explorer::give_back(const char* how, double now_s) {
-  if (++blocked_tries_[map_.states().geometry().index(task_->cell)] >= kMostBlocked)
-    board_.give_up(task_->cell, false, settings_.grain.spacing);
-  else
-    board_.defer(task_->cell, settings_.grain.spacing, now_s + kDeferred);
+  const auto around = neighbours(now_s);
+  const auto* blocker = traffic_.in_the_way(way_, around, kNearby);
+  int& tries = blocked_tries_[map_.states().geometry().index(task_->cell)];
+  if (blocker == nullptr || !has_moved(*blocker)) ++tries;
+  if (tries >= kMostBlocked) board_.give_up_around(task_->cell, settings_.grain.spacing);
+  else board_.defer(task_->cell, settings_.grain.spacing, now_s + kDeferred);
   end_task(how, now_s);
+  stop();
+  if (blocker != nullptr) stroll(*blocker, around, now_s);
+}
+
+/// Stays where it is: a dead team-mate may lie in the only way home.
+void Explorer::strand(double now_s) {
+  phase_ = Phase::kDone;
+  stranded_ = true;
+  if (!making_room_for_) stop();
+  sink_(now_s, PhaseEvent{self_, "stranded"});
 }
 
 /// Blocked by somebody: drive around, or ask to be let through, or in the end give the task back.
@@ -221,14 +294,16 @@ void Explorer::resolve_block(double now_s) {
   last_try_s_ = now_s;
   trim_way();
   if (way_.empty()) return;
+  const auto around = neighbours(now_s);
+  const auto* first = traffic_.in_the_way(way_, around, kNearby);
   if (now_s > blocked_since_s_ + kGiveUp && !making_room_for_) {
     blocked_since_s_ = -1.0;
     asks_.reset();
-    if (task_) give_back("blocked", now_s);
+    if (task_) return give_back("blocked", now_s);
     stop();
+    if (first != nullptr) stroll(*first, around, now_s);
     return;
   }
-  const auto around = neighbours(now_s);
   const double resolution = map_.states().geometry().resolution;
   const bool stuck = now_s > blocked_since_s_ + kStuck;  // a detour did not help
   const std::size_t rejoin = std::min(way_.size(), static_cast<std::size_t>(kRejoin / resolution) + 1);
@@ -241,7 +316,6 @@ void Explorer::resolve_block(double now_s) {
     drive(std::move(*way));
     return;
   }
-  const auto* first = traffic_.in_the_way(way_, around, kNearby);
   if (first != nullptr && !first->heard && !making_room_for_) return retreat_from(*first, around, now_s);
   if (first != nullptr && asks_ != first->robot) {
     asks_ = first->robot;

@@ -9,7 +9,6 @@ namespace {
 constexpr double kLookAround = 0.3;    // [s] at the stand before a task counts as not observable
 constexpr double kLookAgain = 0.5;     // [s] between questions whether a task is still worth its way
 constexpr double kAskAgain = 2.0;      // [s] between questions to a coordinator that had nothing for us
-constexpr int kIdlePriority = 1000;    // robots without a task make room for those that have one
 
 }  // namespace
 
@@ -31,7 +30,7 @@ Explorer::Explorer(RobotId self, RobotSpec spec, const GridGeometry& geometry, c
       traffic_(geometry, spec_.radius),
       board_(spec_, map_.states()),
       pose_(spec_.start),
-      priority_(kIdlePriority + self) {}
+      luck_(static_cast<std::uint32_t>(self) + 1) {}
 
 void Explorer::sense(double now_s) {
   const Sensing& sensing = body_.sense();
@@ -94,7 +93,7 @@ void Explorer::send_status(double now_s) {
   status.radius = spec_.radius;
   status.explored_rate = rate_.value();
   status.done = phase_ != Phase::kExploring;
-  status.priority = priority_;
+  status.priority = priority();
   status.asks = asks_;
   status.map_hash = map_.hash();
   status.epoch = epoch_;
@@ -162,13 +161,12 @@ void Explorer::check_task(double now_s) {
     if (!board_.is_worth_it(task_->stand)) return end_task("too little left", now_s);
   }
   if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
-    stop();
     return give_back("out of time", now_s);
   }
   if (!arrived_ || here() != task_->stand || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
-    board_.give_up(task_->cell, task_->stand == task_->cell, settings_.grain.spacing, &passable_);
+    board_.give_up_from(passable_, task_->stand);
     end_task("not observable", now_s);
   }
 }
@@ -183,7 +181,6 @@ void Explorer::end_task(const char* how, double now_s) {
   sink_(now_s, TaskEndEvent{self_, task_->cell, how});
   task_.reset();
   refused_s_ = -1e9;
-  priority_ = base_priority();
   status_news_ = true;
 }
 
@@ -236,7 +233,7 @@ void Explorer::apply(const Decision& decision, double now_s) {
   using Verdict = Decision::Verdict;
   epoch_ = decision.epoch.value_or(epoch_);
   if (decision.verdict == Verdict::kGo) {
-    if (phase_ == Phase::kDone) phase_ = Phase::kExploring;
+    phase_ = Phase::kExploring;
     if (task_ == decision.task) return;
     if (!plan(decision.task->stand)) {
       refused_s_ = now_s;
@@ -247,7 +244,7 @@ void Explorer::apply(const Decision& decision, double now_s) {
     arrived_s_ = now_s;
     deadline_s_ = now_s + patience();
     making_room_for_.reset();
-    priority_ = base_priority();
+    lent_priority_.reset();
     status_news_ = true;
     sink_(now_s, GoalEvent{self_, *task_, static_cast<double>(way_.size()) * map_.states().geometry().resolution,
                            decision.value});
@@ -271,7 +268,7 @@ void Explorer::nothing_left(double now_s) {
   sink_(now_s, PhaseEvent{self_, phase_ == Phase::kDone ? "done" : "returning"});
   if (!making_room_for_) stop();
   if (phase_ == Phase::kReturning && !making_room_for_) plan(home);
-  deadline_s_ = now_s + 2.0 * patience();
+  deadline_s_ = now_s + 4.0 * patience();
   retreats_ = 0;
   status_news_ = true;
 }
@@ -280,14 +277,9 @@ void Explorer::go_home(double now_s) {
   const Cell home = map_.states().geometry().cell_of(spec_.start.position());
   if (here() == home && arrived_ && !held_) {
     phase_ = map_news_s_ > refused_s_ ? Phase::kExploring : Phase::kDone;  // there may be something left after all
-    priority_ = base_priority();
     sink_(now_s, PhaseEvent{self_, "home"});
-  } else if (now_s > deadline_s_) {  // a dead team-mate may lie in the only way
-    phase_ = Phase::kDone;
-    stranded_ = true;
-    priority_ = base_priority();
-    if (!making_room_for_) stop();
-    sink_(now_s, PhaseEvent{self_, "stranded"});
+  } else if (now_s > deadline_s_) {
+    strand(now_s);
   } else if (arrived_ && !making_room_for_ && !held_) {
     plan(home);
   }
@@ -300,6 +292,7 @@ void Explorer::restart(double now_s) {
   phase_ = Phase::kExploring;
   asks_.reset();
   making_room_for_.reset();
+  lent_priority_.reset();
   blocked_since_s_ = -1.0;
   refused_s_ = -1e9;
   period_begin_s_ = now_s;

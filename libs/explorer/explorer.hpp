@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <span>
 #include <variant>
 #include <vector>
@@ -83,7 +84,7 @@ class Explorer {
   void act(double now_s);
 
   /// Nothing left, home if asked to return, and everybody in reach knows the same.
-  bool done() const { return phase_ == Phase::kDone && settled_; }
+  bool done() const { return phase_ == Phase::kDone && settled_ && !(settings_.return_home && making_room_for_); }
   bool exploring() const { return phase_ == Phase::kExploring; }
   bool under_way() const { return task_.has_value(); }
   const OccupancyGrid& map() const { return map_.states(); }
@@ -128,13 +129,19 @@ class Explorer {
   void coordinate_locally(double now_s);
   decision::LocalAction local_action(const decision::Neighbour& mate) const;
   bool make_room(const decision::Neighbour& asker, std::span<const decision::Neighbour> around, double now_s);
-  void keep_making_room(std::span<const decision::Neighbour> around, double now_s);
+  std::optional<Cell> destination() const;
+  bool would_meet(const Teammate& mate);
+  bool room_is_needed(double now_s);
+  void keep_making_room(double now_s);
   void retreat_from(const decision::Neighbour& silent, std::span<const decision::Neighbour> around, double now_s);
+  bool has_moved(const decision::Neighbour& mate);
+  void stroll(const decision::Neighbour& mate, std::span<const decision::Neighbour> around, double now_s);
+  void strand(double now_s);
   void step_aside(std::span<const decision::Neighbour> around, double now_s);
   std::vector<Cell> straight_on(Point from) const;
   void note_trail();
   std::vector<decision::Neighbour> neighbours(double now_s) const;
-  int base_priority() const;
+  int priority() const;
   Cell here() const { return map_.states().geometry().cell_of(pose_.position()); }
   Cell base() const;
   bool safe_straight(Point from, Point to) const;
@@ -188,16 +195,18 @@ class Explorer {
   std::optional<RobotId> asks_;        // whom we ask to make room
   std::optional<RobotId> making_room_for_;
   bool room_is_for_silent_ = false;
+  std::optional<int> lent_priority_;   // of whom room is made for
   double making_room_until_s_ = 0.0;
   double touched_since_s_ = 0.0;       // by somebody silent, while idle
   int stood_aside_ = 0;                // times since there was something to do
   int retreats_ = 0;                   // from silent robots in the way, for this task
+  std::map<RobotId, Point> blocked_at_;  // where somebody was when it was last in the way
+  std::minstd_rand luck_;              // breaks ties between robots that block each other
   bool stranded_ = false;              // gave up driving home
   bool held_ = false;                  // stopped on the way, to let somebody pass
   double wait_until_s_ = -1e9;         // nobody is waited for longer than this ...
   double no_wait_until_s_ = -1e9;      // ... and then not again until this
   std::vector<Cell> trail_;            // cells driven through of late, the current one last
-  int priority_ = 0;
 };
 
 }  // namespace outrider::explorer

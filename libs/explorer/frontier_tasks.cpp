@@ -181,19 +181,22 @@ void FrontierTasks::for_block(Cell task, double spacing, Visit&& visit) {
   for (int y = task.y - reach; y <= task.y + reach; ++y)
     for (int x = task.x - reach; x <= task.x + reach; ++x) {
       if (!is_frontier({x, y})) continue;
-      visit(Cell{x, y}, geometry_.index({x, y}));
+      visit(geometry_.index({x, y}));
       if (block_ != 0) tile_of({x, y}).dirty = true;
     }
 }
 
-void FrontierTasks::give_up(Cell task, bool tried, double spacing, const decision::Passability* spare) {
-  for_block(task, spacing, [&](Cell c, std::size_t index) {
-    if (c == task || spare == nullptr || !spare->passable(c)) given_up_[index] |= tried;
-  });
+void FrontierTasks::give_up(Cell c, bool tried) {
+  given_up_[geometry_.index(c)] |= tried;
+  if (block_ != 0) tile_of(c).dirty = true;
+}
+
+void FrontierTasks::give_up_around(Cell task, double spacing) {
+  for_block(task, spacing, [&](std::size_t index) { given_up_.try_emplace(index, false); });
 }
 
 void FrontierTasks::defer(Cell task, double spacing, double until_s) {
-  for_block(task, spacing, [&](Cell, std::size_t index) { deferred_[index] = until_s; });
+  for_block(task, spacing, [&](std::size_t index) { deferred_[index] = until_s; });
 }
 
 bool FrontierTasks::any_deferred(double now_s) {

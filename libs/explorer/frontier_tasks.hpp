@@ -72,9 +72,10 @@ class FrontierTasks {
 
   /// Some frontier is left within a block's reach of `c`.
   bool frontier_near(Cell c, double spacing) const;
-  /// Takes the frontier around `task` off the list for good. `tried`: the robot stood right there. Cells that a robot can
-  /// stand on by `spare` have a view of their own and stay on the list, but for the task itself; null spares none.
-  void give_up(Cell task, bool tried, double spacing, const decision::Passability* spare = nullptr);
+  /// Takes a frontier cell off the list for good. `tried`: the robot stood right there.
+  void give_up(Cell c, bool tried);
+  /// Takes the frontier around `task` off the list for good: nobody gets there.
+  void give_up_around(Cell task, double spacing);
   /// Takes the frontier around `task` off the list until `until_s`.
   void defer(Cell task, double spacing, double until_s);
   /// Puts back what was deferred until now or earlier. True when some frontier still waits. O(deferred).

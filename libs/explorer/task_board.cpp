@@ -253,6 +253,18 @@ std::vector<BidEntry> TaskBoard::entries(const decision::Passability& passable, 
   return Search(*this, passable, at, grain).run();
 }
 
+void TaskBoard::give_up_from(const decision::Passability& passable, Cell stand) {
+  search_from(stand);
+  field_.extend(decision::ReachField::kNoLimit);
+  for (const Cell offset : near_) {
+    const Cell c{stand.x + offset.x, stand.y + offset.y};
+    if (!geometry_.contains(c) || !decision::is_frontier(map_, c)) continue;
+    auto own = stand_for(c, [&](Cell s) { return passable.passable(s); });
+    if (!own || !field_.reached(*own)) own = stand_for(c, [&](Cell s) { return field_.reached(s); });
+    if (own == stand) tasks_.give_up(c, c == stand);
+  }
+}
+
 std::vector<Cell> TaskBoard::path_to(Cell at, Cell stand) {
   search_from(at);
   for (double reach = distance(geometry_.center(at), geometry_.center(stand));

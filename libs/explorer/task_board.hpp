@@ -58,11 +58,10 @@ class TaskBoard {
   bool is_worth_it(Cell stand) const {
     return tasks_.least_gain() == 0.0 || tasks_.unseen(stand) >= tasks_.least_gain();
   }
-  /// The frontier around `task` is never tried again. `tried`: the robot stood right there and saw nothing new. See
-  /// FrontierTasks::give_up().
-  void give_up(Cell task, bool tried, double spacing, const decision::Passability* spare = nullptr) {
-    tasks_.give_up(task, tried, spacing, spare);
-  }
+  /// The robot is at `stand` and sees nothing new: what would be looked at from there is never tried again. O(cells).
+  void give_up_from(const decision::Passability& passable, Cell stand);
+  /// The frontier around `task` is never tried again: nobody gets there.
+  void give_up_around(Cell task, double spacing) { tasks_.give_up_around(task, spacing); }
   /// The frontier around `task` is not offered before `until_s`: a team-mate blocks the way.
   void defer(Cell task, double spacing, double until_s) { tasks_.defer(task, spacing, until_s); }
   /// Offers again what was deferred until now or earlier. True when some frontier still waits.

@@ -27,14 +27,14 @@ LaserScan Lidar::scan(const OccupancyGrid& solid, const Pose2& T_map_robot, doub
   scan.t = t;
   scan.angle_min = beams_ == 1 ? 0.0 : -0.5 * fov_;
   scan.angle_increment = beams_ == 1 ? 0.0 : fov_ / (full_turn ? beams_ : beams_ - 1);
-  scan.range_max = range_;
+  scan.range_max = static_cast<float>(range_);  // as ranges are: rounded down they would pass for echoes
   scan.ranges.resize(static_cast<std::size_t>(beams_));
   cast_scan(solid, T_map_robot.position(), T_map_robot.theta + scan.angle_min, scan.angle_increment, scan.ranges,
             range_);
   if (noise_ == 0.0) return scan;
   for (float& range : scan.ranges) {
     const double error = noise_ * unit_(random_);  // drawn for every beam: the stream does not depend on the map
-    if (range < range_) range = static_cast<float>(std::clamp(range + error, 1e-3, range_));
+    if (range < scan.range_max) range = static_cast<float>(std::clamp(range + error, 1e-3, range_));
   }
   return scan;
 }

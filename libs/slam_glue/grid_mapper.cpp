@@ -67,8 +67,16 @@ bool GridMapper::Impl::make_ray(const LaserScan& scan, std::size_t beam, const P
   ray.dx = std::cos(angle);
   ray.dy = std::sin(angle);
   const GridGeometry& g = states.geometry();
-  const double reach = ray.length + (ray.echo ? into_wall(ray.length, g.resolution) : 0.0);
-  ray.end = g.cell_of({T_map_sensor.x + reach * ray.dx, T_map_sensor.y + reach * ray.dy});
+  const auto cell_at = [&](double way) { return g.cell_of({T_map_sensor.x + way * ray.dx, T_map_sensor.y + way * ray.dy}); };
+  if (ray.echo) {
+    const double into = into_wall(ray.length, g.resolution);
+    const Cell front = cell_at(ray.length - into);
+    ray.end = cell_at(ray.length + into);
+    ray.echo = front.x == ray.end.x || front.y == ray.end.y;  // else a corner: of one of the two cells beside
+    if (ray.echo) return true;
+    ray.length -= into;
+  }
+  ray.end = cell_at(ray.length);
   return true;
 }
 

@@ -196,14 +196,33 @@ TEST(TaskBoard, AShortListHoldsTheBestOfTheLongOne) {
   }
 }
 
-TEST(TaskBoard, WhatWasGivenUpIsNotOfferedAgain) {
+TEST(TaskBoard, WhatWasLookedAtInVainIsNotOfferedAgainFromThere) {
+  std::size_t given_up = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Discovery d(seed);
+    for (int step = 0; step < 6; ++step) d.look();
+    Cell at = d.somewhere();
+    std::set<std::pair<int, int>> stands;
+    for (;;) {
+      const auto entries = d.board.entries(d.passable, at, {.spacing = 0.5});
+      if (entries.empty()) break;
+      for (const auto& e : entries) ASSERT_FALSE(stands.contains({e.stand.x, e.stand.y})) << "seed " << seed;
+      at = entries.front().stand;
+      stands.insert({at.x, at.y});
+      d.board.give_up_from(d.passable, at);
+    }
+    given_up += stands.size();
+  }
+  EXPECT_GT(given_up, 8U);
+}
+
+TEST(TaskBoard, WhereNobodyGetsIsNotOfferedAgain) {
   Discovery d(3);
   for (int step = 0; step < 6; ++step) d.look();
   const Cell at = d.somewhere();
   auto entries = d.board.entries(d.passable, at, {.spacing = 0.5});
-  for (std::size_t round = 0; !entries.empty(); ++round) {
-    ASSERT_LT(round, d.map.size());
-    d.board.give_up(entries.front().task, true, 0.5);
+  while (!entries.empty()) {
+    d.board.give_up_around(entries.front().task, 0.5);
     const auto fewer = d.board.entries(d.passable, at, {.spacing = 0.5});
     ASSERT_LT(fewer.size(), entries.size());
     entries = fewer;

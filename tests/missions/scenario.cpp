@@ -193,16 +193,16 @@ decision::DistanceField reach_of(const Scenario& s, const MissionResult& result,
 }
 
 void check_robot(const Scenario& s, const MissionResult& result, std::size_t r, const std::vector<bool>& alive,
-                 std::vector<std::string>& problems) {
+                 std::vector<Problem>& problems) {
   const auto& g = s.truth.geometry();
   const auto reach = reach_of(s, result, r, alive);
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < s.truth.size(); ++i)
     unknown += reach.reached(g.cell_at(i)) && result.robots[r].map[i] == CellState::kUnknown;
-  if (unknown > 0) problems.push_back(fmt::format("{} can reach {} cells that it does not know", s.team[r].name, unknown));
+  if (unknown > 0) problems.push_back({fmt::format("{} can reach {} cells that it does not know", s.team[r].name, unknown)});
   const Cell home = g.cell_of(s.team[r].start.position());
   if (s.settings.explorer.return_home && reach.reached(home) && g.cell_of(end_of(result.robots[r])) != home)
-    problems.push_back(fmt::format("{} can reach its home and is not there", s.team[r].name));
+    problems.push_back({fmt::format("{} can reach its home and is not there", s.team[r].name)});
 }
 
 bool equal(const MissionResult& a, const MissionResult& b) {
@@ -234,20 +234,20 @@ Scenario draw_scenario(std::uint64_t number) {
   return s;
 }
 
-std::vector<std::string> check_scenario(const Scenario& s) {
-  std::vector<std::string> problems;
+std::vector<Problem> check_scenario(const Scenario& s) {
+  std::vector<Problem> problems;
   try {
     const MissionResult result = run_mission(s.truth, s.team, s.settings);
-    if (!equal(result, run_mission(s.truth, s.team, s.settings))) problems.push_back("two runs differ");
+    if (!equal(result, run_mission(s.truth, s.team, s.settings))) problems.push_back({"two runs differ", true});
     if (result.status == MissionStatus::kTimeout) {
-      problems.push_back(fmt::format("not finished after {:.0f} s", result.mission_time_s));
+      problems.push_back({fmt::format("not finished after {:.0f} s", result.mission_time_s)});
       return problems;
     }
     const auto alive = living(s, result.mission_time_s);
     for (std::size_t r = 0; r < s.team.size(); ++r)
       if (alive[r]) check_robot(s, result, r, alive, problems);
   } catch (const std::exception& e) {  // a collision is one
-    problems.push_back(e.what());
+    problems.push_back({e.what(), true});
   }
   return problems;
 }
@@ -260,7 +260,8 @@ std::string picture(const Scenario& s, const MissionResult& result) {
     for (int x = 0; x < g.width; ++x) {
       char mark = s.truth[Cell{x, y}] == CellState::kFree ? '.' : '#';
       for (std::size_t r = 0; r < s.team.size(); ++r) {
-        if (mark == '.' && alive[r] && result.robots[r].map[Cell{x, y}] == CellState::kUnknown) mark = '?';
+        if (mark == '.' && alive[r] && result.robots[r].map[Cell{x, y}] != CellState::kFree)
+          mark = result.robots[r].map[Cell{x, y}] == CellState::kUnknown ? '?' : 'x';
         if (g.cell_of(s.team[r].start.position()) == Cell{x, y}) mark = static_cast<char>('a' + r);
       }
       for (std::size_t r = 0; r < s.team.size(); ++r)

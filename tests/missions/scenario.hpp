@@ -19,10 +19,16 @@ struct Scenario {
 /// The same number gives the same scenario.
 Scenario draw_scenario(std::uint64_t number);
 
-/// What went wrong, one line each; empty when nothing did. Runs the scenario twice.
-std::vector<std::string> check_scenario(const Scenario& scenario);
+struct Problem {
+  std::string text;
+  bool never = false;  ///< a collision, or two runs that differ: no bad luck excuses it
+};
 
-/// The true map with start cells (a, b, ...), end cells (A, B, ...), and '?' where somebody alive does not know a free cell.
+/// What went wrong; empty when nothing did. Runs the scenario twice.
+std::vector<Problem> check_scenario(const Scenario& scenario);
+
+/// The true map with start cells (a, b, ...), end cells (A, B, ...), and where somebody alive is wrong about a free cell:
+/// '?' where it is unknown to them, 'x' where they take it for a wall.
 std::string picture(const Scenario& scenario, const explorer::MissionResult& result);
 
 }  // namespace outrider::test

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "random_world.hpp"
+#include "sim/lidar.hpp"
 #include "sim/simulator.hpp"
 #include "sim/visibility.hpp"
 #include "sim/world.hpp"
@@ -109,6 +110,16 @@ TEST(Lidar, RangesAreThoseOfTheExactRay) {
   }
   EXPECT_GT(echoes, 20U);
   EXPECT_LT(echoes, 181U);
+}
+
+// 0.9 m is more than the nearest float.
+TEST(Lidar, NothingInRangeIsNoEchoWhateverTheRange) {
+  const OccupancyGrid open(GridGeometry{0.5, {0.0, 0.0}, 20, 20}, CellState::kFree);
+  for (const double range : {0.7, 0.9, 1.1, 2.0, 3.3}) {
+    Lidar lidar({.range = range}, 0.0, 1);
+    const LaserScan scan = lidar.scan(solid_world(open), {5.0, 5.0, 0.3}, 0.0);
+    for (std::size_t b = 0; b < scan.ranges.size(); ++b) ASSERT_FALSE(scan.valid(b)) << range << " m, beam " << b;
+  }
 }
 
 TEST(Lidar, AFullTurnHasNoDoubledBeam) {

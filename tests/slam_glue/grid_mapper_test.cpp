@@ -137,6 +137,23 @@ LaserScan beam(double range, double range_max) {
   return scan;
 }
 
+// Beams at 45 degrees from the centre of a cell meet the corners of walls exactly; the echo is of a wall beside them.
+TEST(GridMapper, NoFreeCellBehindACornerIsTakenForAWall) {
+  std::mt19937_64 random(5);
+  for (int round = 0; round < 20; ++round) {
+    const OccupancyGrid world = random_rooms(random);
+    GridMapper mapper(world.geometry(), {});
+    std::vector<std::uint32_t> changed;
+    for (std::size_t i = 0; i < world.size(); i += 7) {
+      if (world[i] != CellState::kFree) continue;
+      const Point at = world.geometry().center(world.geometry().cell_at(i));
+      mapper.insert(look(world, {at.x, at.y, 0.0}, 0.9 + 0.1 * round), {at.x, at.y, 0.0}, changed);
+    }
+    for (std::size_t i = 0; i < world.size(); ++i)
+      ASSERT_FALSE(world[i] == CellState::kFree && mapper.states()[i] == CellState::kOccupied) << "round " << round;
+  }
+}
+
 TEST(GridMapper, OneBeamByHand) {
   struct Case {
     double range, range_max;
