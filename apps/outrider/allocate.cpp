@@ -2,6 +2,7 @@
 
 #include "allocate.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <chrono>

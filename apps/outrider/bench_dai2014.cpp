@@ -1,5 +1,6 @@
 // Dai, Yao and Zhao 2014: four unlike robots explore a sparse field from forty start placements. docs/benches.md.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Lozenguez et al. 2015, Fig. 9 and 10: what punctual coordination saves over continuous coordination. docs/benches.md.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Matignon, Jeanpierre and Mouaddib 2012, figure 5: a team explores an office while its radio fails. docs/benches.md.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

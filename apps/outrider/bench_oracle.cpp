@@ -1,5 +1,6 @@
 // How far from the best possible: coordinators beside a plan that knows the map, and beside the lower bound.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

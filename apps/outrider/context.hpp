@@ -1,12 +1,16 @@
 #pragma once
 // What every verb shares: common flags, and where results, progress and interrupts go.
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace outrider::app {
 

@@ -1,5 +1,6 @@
 // `outrider explore`: a simulated team explores a world that it does not know.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <chrono>

@@ -1,5 +1,6 @@
 // The flags that verbs share.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>

@@ -1,5 +1,6 @@
 // `outrider list`: what there is, one line each.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

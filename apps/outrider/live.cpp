@@ -1,5 +1,6 @@
 #include "live.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,6 +39,7 @@ struct RobotBody {
       link::LcmBodySettings settings = o.body;
       settings.speed = spec.speed;
       settings.range_max = spec.range;
+      settings.arrive_m = spec.radius;
       real.emplace(link::MulticastUrl::parse(o.url), std::move(settings));
     } else if (arena.empty()) {
       alone.emplace(truth, std::vector{spec}, options);
@@ -158,7 +160,7 @@ report::RunRecord live_record(const LiveOptions& o, const sim::World& world, con
   record.seed = seed;
   record.world = world_json(world);
   record.comms = o.mission.comms;
-  record.configuration = {{"world", o.mission.world}, {"coordinator", o.mission.coordinator}, {"comms", o.mission.comms},
+  record.configuration = {{"world", o.real_body ? world.name : o.mission.world}, {"coordinator", o.mission.coordinator}, {"comms", o.mission.comms},
                           {"sensing", o.mission.sensing}, {"url", o.url}, {"speed", o.speed}, {"key", !o.key_file.empty()},
                           {"max_time_s", o.mission.max_time}, {"gone_s", o.gone_s}, {"return_home", o.mission.return_home}};
   const double simulated_s = record.result.value("mission_time_s", 0.0);

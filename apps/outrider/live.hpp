@@ -1,7 +1,6 @@
 #pragma once
 // What `robot` and `team` share: the flags of a live run, and one robot's run from its flags to its journal.
 
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,6 @@
 // The command line: verbs, common flags, exit codes. What a verb does lives in its own file.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 

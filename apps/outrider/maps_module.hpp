@@ -3,7 +3,6 @@
 // loaded when it is first asked for. Its shared libraries cost each process about 0.4 s and 70 MB; most verbs do
 // without.
 
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>

@@ -1,5 +1,6 @@
 // `outrider report RUN...`: the key figures of one run, or several side by side.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>

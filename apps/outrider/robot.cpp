@@ -1,5 +1,6 @@
 // `outrider robot`: one live robot.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // `outrider sweep`: every combination of explore's settings, sharded, resumable, compared.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <fstream>

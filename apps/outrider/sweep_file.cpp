@@ -1,5 +1,6 @@
 #include "sweep_file.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <set>
 

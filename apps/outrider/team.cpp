@@ -1,5 +1,6 @@
 // `outrider team`: a whole live team on this machine, one process a robot.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>

@@ -1,5 +1,6 @@
 // `outrider watch`: a live team in a browser.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <poll.h>
 

@@ -163,7 +163,7 @@ void Explorer::check_task(double now_s) {
   if (now_s > deadline_s_) {  // driven off its way again and again: whatever the reason, never for ever
     return give_back("out of time", now_s);
   }
-  if (!arrived_ || here() != task_->stand || making_room_for_) {
+  if (!has_reached(task_->stand) || making_room_for_) {
     arrived_s_ = now_s;
   } else if (now_s > arrived_s_ + kLookAround) {
     board_.give_up_from(passable_, task_->stand);
@@ -275,7 +275,7 @@ void Explorer::nothing_left(double now_s) {
 
 void Explorer::go_home(double now_s) {
   const Cell home = map_.states().geometry().cell_of(spec_.start.position());
-  if (here() == home && arrived_ && !held_) {
+  if (has_reached(home)) {
     phase_ = map_news_s_ > refused_s_ ? Phase::kExploring : Phase::kDone;  // there may be something left after all
     sink_(now_s, PhaseEvent{self_, "home"});
   } else if (now_s > deadline_s_) {

@@ -144,6 +144,8 @@ class Explorer {
   int priority() const;
   Cell here() const { return map_.states().geometry().cell_of(pose_.position()); }
   Cell base() const;
+  /// Stands there for good, or as near as a real body gets.
+  bool has_reached(Cell stand) const;
   bool safe_straight(Point from, Point to) const;
   bool clear_of_team(Point from, Point to) const;
 

@@ -91,6 +91,11 @@ void Explorer::drive(std::vector<Cell> way) {
   status_news_ = true;
 }
 
+bool Explorer::has_reached(Cell stand) const {
+  const Point there = map_.states().geometry().center(stand);
+  return arrived_ && !held_ && (here() == stand || distance(pose_.position(), there) <= spec_.radius);
+}
+
 void Explorer::stop() {
   way_.clear();
   held_ = false;

@@ -18,7 +18,7 @@ struct LcmBodySettings {
   Pose2 T_robot_sensor;
   double speed = 0.5;        ///< [m/s]
   double range_max = 5.0;    ///< of the laser [m]
-  double arrive_m = 0.15;    ///< nearer than this to the last way-point the robot has arrived [m]
+  double arrive_m = 0.2;     ///< nearer than this to the last way-point the robot has arrived [m]
 };
 
 /// A scan of planar_lidar_t, or a pose of pose_t, from an LCM payload; nothing when its lengths or values are off. Nothing

@@ -103,7 +103,7 @@ SlamResult localize(const LogReader& reader, const SlamOptions& options, const S
         fmt::format("the SLAM's map did not grow over {:.0f} m of the way: scans no longer match it, "
                     "poses there are odometry; try another method",
                     watch.longest_m()));
-  if (!result.log.has_odometry) result.warnings.push_back("the log holds no odometry");
+  if (!result.log.has_odometry) result.warnings.emplace_back("the log holds no odometry");
   return result;
 }
 

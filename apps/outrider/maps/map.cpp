@@ -1,5 +1,6 @@
 // `outrider map IN OUT`: converts maps; `--info` describes one.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "replay.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
