@@ -36,7 +36,7 @@ enum class Rebid {
 /// The free scalars of the rules, and the paper's ambiguous points as named choices. docs/equations.md tells which
 /// reading is the default and what the others cost.
 struct BidParameters {
-  double rho = 1.0;     ///< weight of the distance, eq. 3 [m^2/m]
+  double rho = 2.0;     ///< weight of the distance, eq. 3 [m^2/m]; by measurement, docs/benches.md
   double gamma = 1.0;   ///< influence of team-mates without a target, eq. 2
   double weight = 1.0;  ///< of the whole second part U_p2 [m^2]
   double alpha = 0.3;   ///< expected utility per explored rate, eq. 10 [s]
