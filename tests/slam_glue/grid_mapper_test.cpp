@@ -24,7 +24,7 @@ LaserScan look(const OccupancyGrid& world, const Pose2& T_map_robot, double rang
   LaserScan scan;
   scan.angle_min = -kPi;
   scan.angle_increment = 2.0 * kPi / kBeams;
-  scan.range_max = range;
+  scan.range_max = static_cast<float>(range);  // as ranges are (sim::Lidar)
   scan.ranges.resize(kBeams);
   cast_scan(world, T_map_robot.position(), T_map_robot.theta + scan.angle_min, scan.angle_increment, scan.ranges,
             range);
