@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "decision/tour_moves.hpp"
+
 namespace outrider::decision {
 namespace {
 
@@ -186,8 +188,7 @@ std::size_t CoveragePlanner::best_place(std::size_t robot, const Tour& tour, Nod
 /// Moves a few way-points to where they fit, or anywhere.
 void CoveragePlanner::move_some(CoverageTours& tours, std::size_t from, std::size_t i, std::size_t to) {
   const std::size_t n = std::min(tours[from].size() - i, 1 + below(4));
-  Tour some(at(tours[from], i), at(tours[from], i + n));
-  tours[from].erase(at(tours[from], i), at(tours[from], i + n));
+  Tour some = take_stretch(tours[from], i, n);
   const std::size_t j = below(3) != 0 ? best_place(to, tours[to], some.front()) : below(tours[to].size() + 1);
   if (below(2) == 0) std::reverse(some.begin(), some.end());
   tours[to].insert(at(tours[to], j), some.begin(), some.end());
@@ -196,11 +197,7 @@ void CoveragePlanner::move_some(CoverageTours& tours, std::size_t from, std::siz
 void CoveragePlanner::exchange_tails(CoverageTours& tours, std::size_t a, std::size_t i, std::size_t b) {
   if (a == b) return;
   const std::size_t j = below(2) != 0 ? best_place(b, tours[b], tours[a][i]) : below(tours[b].size() + 1);
-  const Tour tail(at(tours[a], i), tours[a].end());
-  tours[a].erase(at(tours[a], i), tours[a].end());
-  tours[a].insert(tours[a].end(), at(tours[b], j), tours[b].end());
-  tours[b].erase(at(tours[b], j), tours[b].end());
-  tours[b].insert(tours[b].end(), tail.begin(), tail.end());
+  decision::exchange_tails(tours[a], i, tours[b], j);
 }
 
 /// Changes the plan at random; returns whose tours.
@@ -229,11 +226,9 @@ std::vector<std::size_t> CoveragePlanner::change(CoverageTours& tours) {
     case 5:
       tour.erase(at(tour, i));
       break;
-    case 6: {  // reverse a stretch
-      const std::size_t j = below(tour.size());
-      std::reverse(at(tour, std::min(i, j)), at(tour, std::max(i, j) + 1));
+    case 6:
+      reverse_stretch(tour, i, below(tour.size()));
       break;
-    }
     default:
       exchange_tails(tours, a, i, b);
       if (b != a) changed.push_back(b);

@@ -8,6 +8,7 @@
 
 #include "decision/coverage_plan.hpp"
 #include "decision/passability.hpp"
+#include "decision/tour_moves.hpp"
 #include "explorer/known_map_views.hpp"
 #include "explorer/mission.hpp"
 
@@ -205,8 +206,7 @@ class Planner {
     switch (tour.empty() ? 2 : below(6)) {
       case 0: {  // move some
         const std::size_t n = std::min(tour.size() - i, 1 + below(4));
-        std::vector<Cell> some(at(tour, i), at(tour, i + n));
-        tour.erase(at(tour, i), at(tour, i + n));
+        std::vector<Cell> some = decision::take_stretch(tour, i, n);
         if (below(2) == 0) std::reverse(some.begin(), some.end());
         tours[b].insert(at(tours[b], below(tours[b].size() + 1)), some.begin(), some.end());
         break;
@@ -220,21 +220,11 @@ class Planner {
       case 3:
         tour.erase(at(tour, i));
         break;
-      case 4: {  // reverse a stretch
-        const std::size_t j = below(tour.size());
-        std::reverse(at(tour, std::min(i, j)), at(tour, std::max(i, j) + 1));
+      case 4:
+        decision::reverse_stretch(tour, i, below(tour.size()));
         break;
-      }
-      default: {  // exchange tails
-        if (a == b) break;
-        auto& other = tours[b];
-        const std::size_t j = below(other.size() + 1);
-        std::vector<Cell> tail(at(tour, i), tour.end());
-        tour.erase(at(tour, i), tour.end());
-        tour.insert(tour.end(), at(other, j), other.end());
-        other.erase(at(other, j), other.end());
-        other.insert(other.end(), tail.begin(), tail.end());
-      }
+      default:
+        if (a != b) decision::exchange_tails(tour, i, tours[b], below(tours[b].size() + 1));
     }
   }
 
