@@ -1,6 +1,7 @@
 #pragma once
 // The seam between a robot and the way its team decides who goes where.
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -31,6 +32,14 @@ struct Teammate {
   StatusMessage status;
   double heard_s = 0.0;  ///< when
 };
+
+/// The team-mate of that number in a team sorted by robot; null when it is not in it. O(log team).
+template <class Team>
+auto find_mate(Team& team, RobotId robot) -> decltype(team.data()) {
+  const auto mate = std::lower_bound(team.begin(), team.end(), robot,
+                                     [](const Teammate& t, RobotId number) { return t.robot < number; });
+  return mate != team.end() && mate->robot == robot ? &*mate : nullptr;
+}
 
 /// One finished auction round, for the record: every bid, winners and losers.
 struct AuctionRecord {

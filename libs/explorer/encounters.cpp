@@ -52,9 +52,7 @@ std::vector<decision::Neighbour> Explorer::neighbours(double now_s) const {
   for (const Sighting& sighting : sightings_) {
     if (distance(sighting.position, pose_.position()) > kNearby) continue;
     decision::Neighbour n{sighting.robot, sighting.position, sighting.radius, {}, sighting.robot, {}};
-    const auto mate = std::lower_bound(team_.begin(), team_.end(), n.robot,
-                                       [](const Teammate& t, RobotId robot) { return t.robot < robot; });
-    if (mate != team_.end() && mate->robot == n.robot && now_s <= mate->heard_s + settings_.silent_after) {
+    if (const Teammate* mate = find_mate(team_, n.robot); mate != nullptr && in_hearing(*mate, now_s)) {
       n.way = mate->status.way;
       n.priority = mate->status.priority;
       n.asks = mate->status.asks;
@@ -110,8 +108,8 @@ bool Explorer::would_meet(const Teammate& mate) {
 bool Explorer::room_is_needed(double now_s) {
   if (now_s >= making_room_until_s_) return false;
   if (room_is_for_silent_) return true;
-  const auto asker = std::find_if(team_.begin(), team_.end(), [&](const Teammate& t) { return t.robot == *making_room_for_; });
-  if (asker == team_.end() || now_s > asker->heard_s + settings_.silent_after) return false;
+  const Teammate* asker = find_mate(team_, *making_room_for_);
+  if (asker == nullptr || !in_hearing(*asker, now_s)) return false;
   if (asker->status.asks == self_ || (!asker->status.way.empty() && !arrived_)) return true;
   if (task_ || asker->status.way.size() < 2) return false;
   if (now_s < last_try_s_ + kTryAgain) return true;

@@ -40,7 +40,7 @@ void Explorer::sense(double now_s) {
   note_trail();
   sightings_ = sensing.sightings;
   for (const Sighting& seen : sightings_)  // whoever is in view is known to be there, heard or not
-    if (const auto mate = find_mate(seen.robot); mate != team_.end())
+    if (Teammate* mate = find_mate(team_, seen.robot))
       mate->status.pose = {seen.position.x, seen.position.y, mate->status.pose.theta};
   take_in(sensing);
   note_news(now_s);
@@ -98,7 +98,7 @@ void Explorer::send_status(double now_s) {
   status.map_hash = map_.hash();
   status.epoch = epoch_;
   for (const Teammate& mate : team_)
-    if (now_s <= mate.heard_s + settings_.silent_after && status.heard.size() < StatusMessage::kMostHeard)
+    if (in_hearing(mate, now_s) && status.heard.size() < StatusMessage::kMostHeard)
       status.heard.push_back(mate.robot);
   bus_.send(std::move(status));
   status_news_ = false;
@@ -119,10 +119,10 @@ void Explorer::hear(const link::Delivery& delivery, double now_s) {
   if (const auto* update = std::get_if<MapUpdate>(&message)) {
     for (const CellRun& run : update->runs) map_.merge(run);
   } else if (const auto* status = std::get_if<StatusMessage>(&message)) {
-    auto mate = find_mate(status->robot);
-    if (mate == team_.end()) {
+    Teammate* mate = find_mate(team_, status->robot);
+    if (mate == nullptr) {
       const auto after = std::find_if(team_.begin(), team_.end(), [&](const Teammate& t) { return t.robot > status->robot; });
-      mate = team_.insert(after, Teammate{status->robot, {}, 0.0});
+      mate = &*team_.insert(after, Teammate{status->robot, {}, 0.0});
     }
     mate->status = *status;  // in place: its way keeps its memory
     mate->heard_s = now_s;
@@ -184,16 +184,9 @@ void Explorer::end_task(const char* how, double now_s) {
   status_news_ = true;
 }
 
-/// Whoever was ever heard of; team_.end() otherwise.
-std::vector<Teammate>::iterator Explorer::find_mate(RobotId robot) {
-  const auto mate = std::lower_bound(team_.begin(), team_.end(), robot,
-                                     [](const Teammate& t, RobotId number) { return t.robot < number; });
-  return mate != team_.end() && mate->robot == robot ? mate : team_.end();
-}
-
 /// The team-mates in hearing: usually all that were ever heard, and nothing has to be copied.
 std::span<const Teammate> Explorer::heard_of_late(double now_s) {
-  const auto silent = [&](const Teammate& mate) { return now_s > mate.heard_s + settings_.silent_after; };
+  const auto silent = [&](const Teammate& mate) { return !in_hearing(mate, now_s); };
   if (std::none_of(team_.begin(), team_.end(), silent)) return team_;
   std::size_t heard = 0;  // copied over last time's, whose memory is used again
   for (const Teammate& mate : team_) {

@@ -109,7 +109,8 @@ class Explorer {
   void share();
   void send_status(double now_s);
   void hear(const link::Delivery& delivery, double now_s);
-  std::vector<Teammate>::iterator find_mate(RobotId robot);
+  /// Said something of late.
+  bool in_hearing(const Teammate& mate, double now_s) const { return now_s <= mate.heard_s + settings_.silent_after; }
   std::span<const Teammate> heard_of_late(double now_s);
   void run_coordinator(double now_s);
   void apply(const Decision& decision, double now_s);

@@ -75,8 +75,8 @@ class LiveRobot {
     bool done = robot_.done();
     for (RobotId id = 0; id < static_cast<RobotId>(settings_.team.size()); ++id) {
       if (id == settings_.self) continue;
-      const auto mate = std::find_if(robot_.team().begin(), robot_.team().end(), [&](const Teammate& t) { return t.robot == id; });
-      const bool known = mate != robot_.team().end();
+      const Teammate* mate = find_mate(robot_.team(), id);
+      const bool known = mate != nullptr;
       const double heard_s = known ? mate->heard_s : begin_s_;
       const bool gone = now_s > heard_s + settings_.silent_is_gone_s;
       const bool equal = known && mate->status.map_hash == robot_.map_hash();
