@@ -83,6 +83,10 @@ double LoopCloser::turn(const Drift& drift) const {
   return std::min(kPi, 0.06 + settings_.drift_rad * drift.way_m + 2.5 * std::sqrt(drift.blind(2, 2)));
 }
 
+bool LoopCloser::looks_widely(std::size_t k, const Drift& drift) const {
+  return k % kVagueEvery == 0 || radius(drift) < kVagueM;
+}
+
 std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std::size_t k,
                                                 const std::vector<Drift>& drift, bool other_sessions) const {
   const Keyframe& frame = graph.frames[k];
@@ -93,8 +97,7 @@ std::vector<std::size_t> LoopCloser::candidates(const KeyframeGraph& graph, std:
     if (!other.kept() || (other_sessions && other.session == frame.session)) continue;
     if (other.session == frame.session && std::abs(frame.path_m - other.path_m) < settings_.recent_m) continue;
     if (!std::isfinite(drift[j].way_m)) continue;
-    const bool widely = k % kVagueEvery == 0 || radius(drift[j]) < kVagueM;
-    const double reach = radius(widely ? drift[j] : Drift{drift[j].way_m});
+    const double reach = radius(looks_widely(k, drift[j]) ? drift[j] : Drift{drift[j].way_m});
     const double apart = distance(view, graph.poses[j] * other.view);
     if (apart - reach > settings_.view_m) continue;
     // Where poses are vague all are near; the nearest are still the likeliest.
@@ -202,7 +205,7 @@ bool LoopCloser::look(KeyframeGraph& graph, std::size_t k, bool other_sessions) 
     // Dead reckoning is often better than feared, and a wide search finds more that looks alike: the near one comes
     // first.
     auto closure = check(graph, j, k, {drift[j].way_m});
-    const bool widely = !drift[j].blind.isZero(0.0) && (k % kVagueEvery == 0 || radius(drift[j]) < kVagueM);
+    const bool widely = !drift[j].blind.isZero(0.0) && looks_widely(k, drift[j]);
     if (widely && (!closure || !closure->accepted()))
       if (auto other = check(graph, j, k, drift[j])) closure = std::move(other);
     if (!closure) continue;

@@ -70,6 +70,8 @@ class LoopCloser {
   std::vector<Drift> drift_from(const KeyframeGraph& graph, std::size_t k) const;
   double radius(const Drift& drift) const;
   double turn(const Drift& drift) const;
+  /// Keyframe `k` searches as far as the place may lie off; that is dear where it is vague.
+  bool looks_widely(std::size_t k, const Drift& drift) const;
   std::vector<std::size_t> candidates(const KeyframeGraph& graph, std::size_t k, const std::vector<Drift>& drift,
                                       bool other_sessions) const;
   bool witness(const KeyframeGraph& graph, const LoopClosure& a, const LoopClosure& b) const;
