@@ -11,12 +11,6 @@
 namespace outrider::decision {
 namespace {
 
-Grid<std::uint8_t> free_cells(const OccupancyGrid& map) {
-  Grid<std::uint8_t> mask(map.geometry());
-  for (std::size_t i = 0; i < map.size(); ++i) mask[i] = map[i] == CellState::kFree;
-  return mask;
-}
-
 /// The slow oracle: relaxation over all neighbours that are linked by a leg of one step, until nothing changes.
 std::vector<int> relaxed_fifths(CoverageGround& ground, CoverageGround::Node from) {
   std::vector<int> fifths(ground.nodes(), 1 << 20);
@@ -41,7 +35,7 @@ TEST(CoverageGround, LegsAreShortestWaysOverNeighbours) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
     const OccupancyGrid map = test::random_map(seed, 24, 0.25);
-    const Grid<std::uint8_t> free = free_cells(map);
+    const Grid<std::uint8_t> free = test::free_cells(map);
     for (const int block : {1, 2, 3}) {
       CoverageGround ground(map, free, free, block);
       const auto from = static_cast<CoverageGround::Node>(seed * 37 % ground.nodes());
@@ -70,7 +64,7 @@ TEST(CoverageGround, BlocksOfOneCellSeeWhatIsInLineOfSight) {
     SCOPED_TRACE(seed);
     const OccupancyGrid map = test::random_map(seed, 20, 0.2);
     const GridGeometry& g = map.geometry();
-    const Grid<std::uint8_t> free = free_cells(map);
+    const Grid<std::uint8_t> free = test::free_cells(map);
     CoverageGround ground(map, free, free, 1);
     for (std::size_t i = 0; i < map.size(); ++i) {
       if (!free[i]) continue;

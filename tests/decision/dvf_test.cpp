@@ -10,12 +10,6 @@
 namespace outrider::decision {
 namespace {
 
-Grid<std::uint8_t> free_cells(const OccupancyGrid& map) {
-  Grid<std::uint8_t> mask(map.geometry());
-  for (std::size_t i = 0; i < map.size(); ++i) mask[i] = map[i] == CellState::kFree;
-  return mask;
-}
-
 /// Eq. 2 step by step, with nothing but plain value iteration: V_emp, f_ij, Pr, then V_i.
 std::vector<double> by_the_book(const Grid<std::uint8_t>& mask, const std::vector<Cell>& goals,
                                 const std::vector<Rival>& rivals, const DvfReading& reading) {
@@ -46,7 +40,7 @@ TEST(DvfPlanner, IsEquationTwoOnRandomMaps) {
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const auto mask = free_cells(test::random_map(seed, 20, 0.5));
+    const auto mask = test::free_cells(test::random_map(seed, 20, 0.5));
     Grid<std::uint8_t> big_ones = mask;  // where robots of another kind fit
     std::vector<Cell> open;
     for (std::size_t i = 0; i < mask.size(); ++i) {
@@ -81,7 +75,7 @@ constexpr const char* kTwoDoors = R"(
     #####################)";
 
 TEST(DvfPlanner, LeavesANearGoalToTheRobotThatStandsThere) {
-  const auto mask = free_cells(test::grid_from_ascii(kTwoDoors));
+  const auto mask = test::free_cells(test::grid_from_ascii(kTwoDoors));
   const Cell a = test::cell_marked(kTwoDoors, 'a'), b = test::cell_marked(kTwoDoors, 'b');
   const std::vector<Cell> goals{a, b};
   DvfPlanner planner({});
@@ -94,7 +88,7 @@ TEST(DvfPlanner, LeavesANearGoalToTheRobotThatStandsThere) {
 }
 
 TEST(DvfPlanner, ARivalRepelsFromWhereItIsHeadingWhenIntentionsCount) {
-  const auto mask = free_cells(test::grid_from_ascii(kTwoDoors));
+  const auto mask = test::free_cells(test::grid_from_ascii(kTwoDoors));
   const Cell a = test::cell_marked(kTwoDoors, 'a'), b = test::cell_marked(kTwoDoors, 'b');
   const Cell self = test::cell_marked(kTwoDoors, 's');
   const std::vector<Cell> goals{a, b};
@@ -103,7 +97,7 @@ TEST(DvfPlanner, ARivalRepelsFromWhereItIsHeadingWhenIntentionsCount) {
 }
 
 TEST(DvfPlanner, CrowdedOutItFallsBackOnItsOwnValues) {
-  const auto mask = free_cells(test::grid_from_ascii(kTwoDoors));
+  const auto mask = test::free_cells(test::grid_from_ascii(kTwoDoors));
   const Cell a = test::cell_marked(kTwoDoors, 'a');
   const std::vector<Cell> goals{a};
   const std::vector<Rival> rival{{a, nullptr}};
@@ -115,7 +109,7 @@ TEST(DvfPlanner, CrowdedOutItFallsBackOnItsOwnValues) {
 }
 
 TEST(DvfPlanner, NothingCanBeReachedFromAClosedRoom) {
-  const auto mask = free_cells(test::grid_from_ascii("..#.."));
+  const auto mask = test::free_cells(test::grid_from_ascii("..#.."));
   DvfPlanner planner({});
   const std::vector<Cell> goals{{4, 0}};
   EXPECT_FALSE(planner.plan(mask, {0, 0}, goals, {}));
@@ -125,7 +119,7 @@ TEST(DvfPlanner, NothingCanBeReachedFromAClosedRoom) {
 // Warm, planner by planner: the answer must not depend on what was planned before.
 TEST(DvfPlanner, RemembersNothingButValues) {
   std::mt19937_64 random(3);
-  auto mask = free_cells(test::random_map(11, 30));
+  auto mask = test::free_cells(test::random_map(11, 30));
   DvfPlanner warm({});
   for (int round = 0; round < 20; ++round) {
     for (int k = 0; k < 5; ++k) mask[random() % mask.size()] = random() % 3 != 0;

@@ -16,12 +16,6 @@ namespace {
 using test::cell_marked;
 using test::grid_from_ascii;
 
-Grid<std::uint8_t> free_cells(const OccupancyGrid& map) {
-  Grid<std::uint8_t> mask(map.geometry());
-  for (std::size_t i = 0; i < map.size(); ++i) mask[i] = map[i] == CellState::kFree;
-  return mask;
-}
-
 // Two states: stay for 1 a step, or leave for a terminal worth 5. V = max(1 / (1 - gamma), gamma 5).
 TEST(ValueIteration, SolvesATwoStateProcessByHand) {
   for (const double gamma : {0.5, 0.9}) {
@@ -52,7 +46,7 @@ TEST(ValueIteration, TheBoundHoldsAfterEverySweep) {
 }
 
 TEST(ValueIteration, InPlaceAndFromAnyStartItFindsTheSameValues) {
-  const auto mask = free_cells(test::random_map(5, 20));
+  const auto mask = test::free_cells(test::random_map(5, 20));
   const std::vector<Goal> goals{{mask.geometry().cell_at(7), 1.0}, {mask.geometry().cell_at(60), 0.7}};
   const GridMdp model(mask, goals, 0.9, {.ahead = 0.8});
   const Solution jacobi = ValueIteration{.tolerance = 1e-12}(model);
@@ -77,7 +71,7 @@ TEST(Wavefront, IsTheSolutionForDeterministicMotion) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const auto mask = free_cells(test::random_map(seed, 24, 0.5));
+    const auto mask = test::free_cells(test::random_map(seed, 24, 0.5));
     const auto goals = random_goals(mask.geometry(), random);
     Wavefront front;
     front.compute(mask, goals, 0.8);
@@ -95,7 +89,7 @@ TEST(Wavefront, RepairedItEqualsOneFromScratch) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    auto mask = free_cells(test::random_map(seed, 30));
+    auto mask = test::free_cells(test::random_map(seed, 30));
     auto goals = random_goals(mask.geometry(), random);
     Wavefront repaired, fresh;
     repaired.compute(mask, goals, 0.9);
@@ -124,7 +118,7 @@ TEST(Wavefront, GoesToTheFartherGoalWhenItIsWorthIt) {
   for (const double near_value : {1.0, 0.1}) {
     SCOPED_TRACE(near_value);
     const std::vector<Goal> goals{{cell_marked(kMap, 'a'), near_value}, {cell_marked(kMap, 'b'), 1.0}};
-    front.compute(free_cells(map), goals, 0.8);
+    front.compute(test::free_cells(map), goals, 0.8);
     const auto way = front.path(cell_marked(kMap, 's'));
     ASSERT_FALSE(way.empty());
     EXPECT_EQ(way.back(), cell_marked(kMap, near_value == 1.0 ? 'a' : 'b'));
@@ -141,7 +135,7 @@ TEST(GridValues, AgreesWithJacobiColdAndAfterChanges) {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    auto mask = free_cells(test::random_map(seed, 18));
+    auto mask = test::free_cells(test::random_map(seed, 18));
     auto goals = random_goals(mask.geometry(), random);
     const Motion motion{.ahead = seed % 2 == 0 ? 0.8 : 0.6};
     GridValues values;
@@ -166,7 +160,7 @@ TEST(GridValues, StrayingCostsAndTheWayStillLeadsToTheGoal) {
     #.#######.#
     #s.......g#
     ###########)";
-  const auto mask = free_cells(grid_from_ascii(kMap));
+  const auto mask = test::free_cells(grid_from_ascii(kMap));
   const std::vector<Goal> goals{{cell_marked(kMap, 'g'), 1.0}};
   const GridMdp model(mask, goals, 0.9, {.ahead = 0.8});
   Wavefront front;

@@ -29,4 +29,11 @@ inline OccupancyGrid random_map(std::uint64_t seed, int largest = 40, double res
   return map;
 }
 
+/// 1 where `map` is free: where a robot without extent may be.
+inline Grid<std::uint8_t> free_cells(const OccupancyGrid& map) {
+  Grid<std::uint8_t> mask(map.geometry());
+  for (std::size_t i = 0; i < map.size(); ++i) mask[i] = map[i] == CellState::kFree;
+  return mask;
+}
+
 }  // namespace outrider::test
