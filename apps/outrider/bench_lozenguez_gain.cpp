@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "auction/optimal.hpp"
 #include "bench.hpp"
@@ -104,23 +105,28 @@ std::string excess(const report::BenchResult& result, const std::string& case_na
   return n ? fmt::format("{:.1f}", 100.0 * sum / n) : "";
 }
 
+/// A metric of all draws with so many goals [%].
+std::vector<double> percents(const report::BenchResult& result, const std::string& case_name, const std::string& algorithm,
+                             int goals, const std::string& metric) {
+  std::vector<double> values;
+  for (const auto& row : result.rows)
+    if (row.case_name == case_name && row.algorithm == algorithm && row.extra["goals"].get<int>() == goals)
+      values.push_back(100.0 * row.metric(metric).value_or(0.0));
+  return values;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 /// Fig. 9 and 10 as a table, by the number of goals.
 report::Table by_goals(const report::BenchResult& result, const std::string& case_name, const std::string& algorithm) {
   report::Table table{fmt::format("{}: {} against continuous, in % (Fig. 9 and 10)", case_name, algorithm),
                       {"goals", "draws", "duration: mean", "best", "worst", "negative", "movement: mean", "best", "worst"}, {}, ""};
   for (int goals = 1; goals <= kMostGoals; ++goals) {
-    std::vector<double> d, m;
-    for (const auto& row : result.rows)
-      if (row.case_name == case_name && row.algorithm == algorithm && row.extra["goals"].get<int>() == goals) {
-        d.push_back(100.0 * row.metric("duration_gain").value_or(0.0));
-        m.push_back(100.0 * row.metric("movement_gain").value_or(0.0));
-      }
+    const std::vector<double> d = percents(result, case_name, algorithm, goals, "duration_gain");
+    const std::vector<double> m = percents(result, case_name, algorithm, goals, "movement_gain");
     if (d.empty()) continue;
-    const auto mean = [](const std::vector<double>& v) {
-      double sum = 0.0;
-      for (const double x : v) sum += x;
-      return sum / static_cast<double>(v.size());
-    };
     const auto cell = [](double x) { return fmt::format("{:.1f}", x); };
     const auto negative = std::count_if(d.begin(), d.end(), [](double x) { return x < -1e-7; });
     table.rows.push_back({std::to_string(goals), std::to_string(d.size()), cell(mean(d)), cell(*std::max_element(d.begin(), d.end())),
@@ -150,14 +156,9 @@ std::string figures(const report::BenchResult& result) {
   for (const auto& c : result.design.cases)
     for (const char* metric : {"duration_gain", "movement_gain"}) {
       std::vector<std::pair<double, double>> means;
-      for (int goals = 1; goals <= kMostGoals; ++goals) {
-        double sum = 0.0;
-        int n = 0;
-        for (const auto& row : result.rows)
-          if (row.case_name == c.name && row.algorithm == "dssa" && row.extra["goals"].get<int>() == goals)
-            sum += 100.0 * row.metric(metric).value_or(0.0), ++n;
-        if (n > 0) means.emplace_back(goals, sum / n);
-      }
+      for (int goals = 1; goals <= kMostGoals; ++goals)
+        if (const auto values = percents(result, c.name, "dssa", goals, metric); !values.empty())
+          means.emplace_back(goals, mean(values));
       html += fmt::format("<h3>{}: {} of dssa</h3>\n{}", c.name, metric, report::curve_svg(means, "goals", "mean gain [%]"));
     }
   return html;

@@ -42,7 +42,8 @@ std::optional<Outcome> run_trial(const Maps& maps, const Trial& trial) {
     if (trial.case_name == s.name) size = s;
   const bool stochastic = trial.algorithm == "policy-stochastic", policy = trial.algorithm != "coordination";
   if (policy && size.goals > (stochastic ? kMostStochastic : kPolicyTable)) return std::nullopt;
-  const auto mission = explorer::draw_mission(stochastic ? maps.deviating : size.goals > kMostStochastic ? *maps.dense : *maps.certain, size.goals, size.robots,
+  const auto& certain = size.goals > kMostStochastic ? *maps.dense : *maps.certain;
+  const auto mission = explorer::draw_mission(stochastic ? maps.deviating : certain, size.goals, size.robots,
                                               explorer::Starts::kApart, trial.seed);
   const double begin = cpu_s();
   double check = 0.0;

@@ -1,7 +1,6 @@
 #pragma once
 // A simulated exploration, from its flags to its record: what `explore` and `sweep` share.
 
-
 #include <filesystem>
 #include <optional>
 #include <string>
